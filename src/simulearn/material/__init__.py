@@ -1,0 +1,12 @@
+"""Material systems as data."""
+
+from simulearn.material.material import (
+    ElasticData,
+    MarlowData,
+    Material,
+    Section,
+    load_material,
+    names,
+)
+
+__all__ = ["ElasticData", "MarlowData", "Material", "Section", "load_material", "names"]
