@@ -1,6 +1,7 @@
 """A grid: what a designer draws. Joints in the plane, beams between them, actuators on the beams.
 
-A grid holds numbers only; its shape is in `outline`, its rules in `validation`, its file in `gridfile`.
+A grid holds numbers only; its shape is in `outline`, its rules in `validation`, its file in
+`gridfile`.
 """
 
 from dataclasses import dataclass
