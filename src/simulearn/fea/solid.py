@@ -11,22 +11,30 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A grid as a solid, mm; the fixed joint's centre is the origin, z = 0 its mid-plane.
+    """A flat grid as a solid, mm and MPa; the fixed joint is the origin, z = 0 the mid-plane.
 
     Attributes:
-        nodes: (N, 3) positions of the nodes in the flat grid.
+        nodes: (N, 3) positions.
         bricks: (E, 20) node indices, numbered as in scikit-fem's `ElementHexS2`.
-        angle: (E,) direction of printing frame 1 (along the beam) from +x, radians.
-        growth: (E, Q, 3) released strains along, across and in thickness in that frame, at the
-            Q integration points, at full release: F_g = I + s diag(growth).
-        stress: (E, Q, 3) printed-in normal stresses in the same frame, MPa.
-        fixed: (K,) indices of the nodes that are held (lower half of the fixed joint).
-        joints: (J, 8) nodes of the joints' corners, in the order of `Result.joints`.
-        beams: (B, 3, 4) nodes of the beams' sections, in the order of `Result.beams`.
+        parts: (E, 2) what a brick belongs to: (beam, slab along it), or (-1, joint).
+        slabs: number of slabs along each beam.
+        points: (3, Q) integration points in the unit brick (along, across, up).
+        weights: (Q,) their weights, adding to one.
+        angle: (E,) direction of the printing frame's first axis (along the beam) from +x, radians.
+        growth: (E, Q, 3) released strains along, across and in thickness, in the printing frame,
+            when all is released: F_g = I + s diag(growth).
+        stress: (E, Q, 3) printed-in normal stresses in the same frame.
+        fixed: (K,) nodes that are held (the lower half of the fixed joint).
+        joints: (J, 8) nodes at the joints' corners, in the order of `Result.joints`.
+        beams: (B, 3, 4) nodes at the beams' sections, in the order of `Result.beams`.
     """
 
     nodes: NDArray[np.float64]
     bricks: NDArray[np.int64]
+    parts: NDArray[np.int64]
+    slabs: int
+    points: NDArray[np.float64]
+    weights: NDArray[np.float64]
     angle: NDArray[np.float64]
     growth: NDArray[np.float64]
     stress: NDArray[np.float64]

@@ -1,0 +1,164 @@
+"""Equilibrium of a solid along a path of released fraction and gravity.
+
+Each increment starts from a quadratic extrapolation of the last three states and iterates with the
+mixed Newton method of `kernel`. An increment that does not converge is halved, down to a limit,
+beyond which the computation fails and says where: there is never a wrong answer.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import ComputationError
+from simulearn.fea import elimination
+from simulearn.fea.kernel import Points, carry, points_of, respond
+from simulearn.fea.laws import Law
+from simulearn.fea.solid import Solid
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Control:
+    """When an increment has converged, and when to give up.
+
+    Attributes:
+        tolerance: largest change of a displacement in the last iteration, mm. Convergence is
+            quadratic: what is left after it is far smaller.
+        iterations: at most, in one increment.
+        halvings: at most, of one increment.
+        mixed: carry the stress as an own unknown; without, it is plain Newton.
+    """
+
+    tolerance: float = 1e-4
+    iterations: int = 15
+    halvings: int = 6
+    mixed: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """A solid in equilibrium: released fraction, gravity, displacements (N, 3) mm, carried stress."""
+
+    released: float
+    gravity: float
+    u: Array
+    carried: Array
+
+
+class NotConvergedError(Exception):
+    """An increment found no equilibrium, for the reason given."""
+
+
+@dataclass(eq=False)
+class Equilibrium:
+    """The equilibrium problem of one solid.
+
+    Attributes:
+        solid: the solid.
+        law: its constitutive law.
+        body_force: weight per volume towards -z, N/mm3.
+        forces: (N, 3) further dead loads, N, scaled with gravity.
+        control: convergence settings.
+        iterations: spent so far.
+        halved: increments that had to be halved so far.
+    """
+
+    solid: Solid
+    law: Law
+    body_force: float
+    forces: Array | None = None
+    control: Control = field(default_factory=Control)
+    iterations: int = 0
+    halved: int = 0
+
+    def __post_init__(self) -> None:
+        self.points: Points = points_of(self.solid)
+        self.structure = elimination.Structure.of(self.solid)
+        self.load = np.zeros_like(self.solid.nodes)
+        self.load[:, 2] = -self.body_force * np.bincount(
+            self.solid.bricks.ravel(), np.asarray(self.points.load).ravel(), len(self.load)
+        )
+        if self.forces is not None:
+            self.load += self.forces
+
+    def flat(self) -> State:
+        """Return the solid as printed: nothing released, no gravity."""
+        points = self.points.volumes.size
+        return State(0.0, 0.0, np.zeros_like(self.solid.nodes), np.zeros((3, 3, points)))
+
+    def advance(self, past: Sequence[State], released: float, gravity: float) -> list[State]:
+        """Return the states on the way from the last of `past` to the given one, the last included.
+
+        Args:
+            past: states on the same smooth path, for extrapolation; at least one.
+            released: fraction of the residual stress to be released, 0 to 1.
+            gravity: multiple of the body force.
+
+        Raises:
+            ComputationError: no equilibrium was found, however small the increment.
+        """
+        path = list(past)
+        step, done = 1.0, 0.0
+        start = np.array([path[-1].released, path[-1].gravity])
+        goal = np.array([released, gravity])
+        reason = ""
+        while done < 1:
+            to = min(done + step, 1.0)
+            s, g = (1 - to) * start + to * goal
+            try:
+                path.append(self._increment(path, float(s), float(g)))
+                done = to
+                step *= 2
+            except NotConvergedError as error:
+                reason = str(error)
+                step /= 2
+                self.halved += 1
+                if step < 2.0**-self.control.halvings:
+                    raise ComputationError(
+                        f"no equilibrium beyond {100 * path[-1].released:.1f} % of the stress "
+                        f"released under {path[-1].gravity:.2f} times gravity: {reason}, even "
+                        f"with the increment halved {self.control.halvings} times"
+                    ) from error
+        return path[len(past) :]
+
+    def _increment(self, path: list[State], s: float, g: float) -> State:
+        u, carried = _extrapolate(path, s, g)
+        for iteration in range(self.control.iterations):
+            stress = carried if self.control.mixed else None
+            response = respond(self.law, self.points, u[self.solid.bricks], s, stress)
+            out_of_balance = g * self.load - self._assemble(np.asarray(response.residual))
+            du = elimination.solve(self.structure, np.asarray(response.stiffness), out_of_balance)
+            self.iterations += 1
+            change = abs(du).max()
+            if not np.isfinite(change):
+                raise NotConvergedError("the stiffness broke down")
+            carried = np.asarray(carry(self.points, response, du[self.solid.bricks], s))
+            u = u + du
+            if change < self.control.tolerance:
+                return State(s, g, u, carried)
+            if change > 1e3:
+                break
+        raise NotConvergedError(f"still moving by {change:.2g} mm after {iteration + 1} iterations")
+
+    def _assemble(self, residual: Array) -> Array:
+        nodes = self.solid.bricks.ravel()
+        return np.stack(
+            [np.bincount(nodes, residual[..., k].ravel(), len(self.load)) for k in range(3)], axis=1
+        )
+
+
+def _extrapolate(path: list[State], s: float, g: float) -> tuple[Array, Array]:
+    """Extrapolate displacements and carried stress through up to three states (Lagrange)."""
+    last = path[-3:]
+    place = lambda state: state.released + state.gravity  # noqa: E731
+    at, goal = [place(state) for state in last], s + g
+    weights = [
+        np.prod([(goal - b) / (a - b) for j, b in enumerate(at) if j != i])
+        for i, a in enumerate(at)
+    ]
+    u = sum(w * state.u for w, state in zip(weights, last, strict=True))
+    carried = sum(w * state.carried for w, state in zip(weights, last, strict=True))
+    return np.asarray(u), np.asarray(carried)

@@ -1,0 +1,197 @@
+"""From a grid to its solid: structured 20-node bricks in joints and beams.
+
+A joint is a quadrilateral block, a beam a row of slabs from one joint's side to another's. Both
+are divided across by the same breaks, so that they share the nodes of the face where they meet.
+Brick faces lie on the ends of every actuator: off-grid ends would shift tips by tens of per cent.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import Basis, ElementHexS2, MeshHex
+
+from simulearn.errors import InputError
+from simulearn.fea.printing import printing
+from simulearn.fea.solid import Solid
+from simulearn.grid import Grid, Outline, outline
+from simulearn.material import Material, Section
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How finely a grid is meshed.
+
+    Attributes:
+        core: bricks across the core between the shells; with 0 one brick spans the whole
+            section and its integration points tell shell from core.
+        slabs: slabs along a beam, even, so that the middle is a face.
+        layers: bricks through each half.
+    """
+
+    core: int = 0
+    slabs: int = 8
+    layers: int = 1
+
+    def __post_init__(self) -> None:
+        if self.core < 0 or self.layers < 1 or self.slabs < 4 or self.slabs % 2:
+            raise InputError(f"{self}: core is at least 0, slabs at least 4 and even, layers 1")
+
+    def across(self, section: Section) -> Array:
+        """Return the breaks across a section, 0 to 1."""
+        shell = section.shell / section.width
+        if self.core == 0:
+            return np.array([0.0, 1.0])
+        return np.unique(np.r_[0, np.linspace(shell, 1 - shell, self.core + 1), 1])
+
+
+COARSE = Layout()  # 210 bricks in a 2x2 grid
+THREE_ACROSS = Layout(core=1)  # shell, core, shell: one growth per brick, as CalculiX needs it
+
+
+def cuts(ratio: float, slabs: int) -> Array:
+    """Return where along a beam its slabs begin and end, 0 to 1, an actuator's ends among them.
+
+    Args:
+        ratio: actuator length over the beam's net length; the actuator is centred.
+        slabs: number of slabs, even.
+
+    Returns:
+        (slabs + 1,) positions; uniform for every ratio that is a multiple of 2 / slabs.
+    """
+    ratio = abs(ratio)
+    if ratio in (0.0, 1.0):
+        return np.linspace(0, 1, slabs + 1)
+    half = int(np.clip(round(ratio * slabs / 2), 1, slabs // 2 - 1))
+    first = np.linspace(0, (1 - ratio) / 2, slabs // 2 - half + 1)
+    middle = np.linspace((1 - ratio) / 2, (1 + ratio) / 2, 2 * half + 1)
+    return np.concatenate([first, middle[1:-1], 1 - first[::-1]])
+
+
+def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
+    """Return the solid of a grid, its fixed joint at the origin.
+
+    Raises:
+        InputError: a joint has no outline.
+    """
+    grid = grid.centred
+    section = material.section
+    shape = outline(grid, section)
+    across = layout.across(section)
+    up = np.linspace(-0.5, 0.5, 2 * layout.layers + 1) * section.thickness
+    along = np.array([cuts(ratio, layout.slabs) for ratio in grid.actuators])
+
+    joints, beams = _number(grid, shape, layout.slabs, len(across), len(up))
+    places = np.empty((max(joints.max(), beams.max()) + 1, 3))
+    x, y = across[:, None, None], across[None, :, None]
+    c = shape.joints[:, :, None, None, :]  # corner k, then places over the block
+    places[joints, :2] = (
+        (1 - x) * (1 - y) * c[:, 0] + x * (1 - y) * c[:, 1] + x * y * c[:, 2] + (1 - x) * y * c[:, 3]
+    )[:, :, :, None, :]
+    t = along[:, 1:-1, None, None]
+    e = shape.beams[:, :, :, None, None, :]  # [start, end], [right, left]
+    right = (1 - t) * e[:, 0, 0] + t * e[:, 1, 0]
+    left = (1 - t) * e[:, 0, 1] + t * e[:, 1, 1]
+    places[beams[:, 1:-1], :2] = ((1 - y) * right + y * left)[:, :, :, None, :]
+    places[joints, 2] = places[beams, 2] = up
+
+    in_joints, in_beams = _cells(joints), _cells(beams)
+    # Where a brick lies: (beam, slab, across, layer) or (-1, joint, across, layer).
+    where = np.concatenate([in_joints[1], in_beams[1]])
+    where[: len(in_joints[1]), 1] = where[: len(in_joints[1]), 0]
+    where[: len(in_joints[1]), 0] = -1
+
+    points, weights = _rule(section, layout)
+    basis = Basis(
+        MeshHex(places.T, np.concatenate([in_joints[0], in_beams[0]]).T),
+        ElementHexS2(),
+        quadrature=(points, weights),
+    )
+    bricks = np.asarray(basis.element_dofs.T, dtype=np.int64)
+    if not (np.asarray(basis.dx) > 0).all():
+        raise InputError("the outlines of the grid fold over: its joints are too close or too acute")
+    beam, slab, strip, layer = where.T
+    held = (beam == -1) & (slab == grid.fixed) & (layer < layout.layers)
+    centre = (along[:, 1:] + along[:, :-1]) / 2  # of slabs
+    width = np.diff(across)
+    angle, growth, stress = printing(
+        grid,
+        material,
+        beam=beam,
+        along=np.where(beam < 0, 0.5, centre[beam, slab % layout.slabs]),
+        across=across[strip][:, None] + width[strip][:, None] * points[1],
+        top=layer >= layout.layers,
+    )
+    # Scikit-fem numbers the vertices first, so that a vertex is its own node.
+    corner = joints[:, [0, -1, -1, 0], [0, 0, -1, -1]]  # (J, 4, up)
+    section_ = beams[:, [0, layout.slabs // 2, -1]][:, :, [0, -1]]  # (B, 3, [right, left], up)
+    return Solid(
+        nodes=np.ascontiguousarray(basis.doflocs.T),
+        bricks=bricks,
+        parts=where[:, :2],
+        slabs=layout.slabs,
+        points=points,
+        weights=weights,
+        angle=angle,
+        growth=growth,
+        stress=stress,
+        fixed=np.unique(bricks[held]),
+        joints=corner[:, :, [0, -1]].swapaxes(1, 2).reshape(-1, 8),
+        beams=section_[..., [0, -1]].swapaxes(2, 3).reshape(-1, 3, 4),
+    )
+
+
+def _number(grid: Grid, shape: Outline, slabs: int, wide: int, high: int) -> tuple[Indices, Indices]:
+    """Number the vertices of joints (J, wide, wide, high) and beams (B, slabs + 1, wide, high).
+
+    Beams begin and end with the vertices of the joint sides that they meet.
+    """
+    joints = np.arange(len(grid.joints) * wide * wide * high).reshape(-1, wide, wide, high)
+    # Side k of a joint from its corner k to k + 1, which is right to left looking outwards.
+    sides = np.stack(
+        [joints[:, :, 0], joints[:, -1, :], joints[:, ::-1, -1], joints[:, 0, ::-1]], axis=1
+    )
+    start, end = sides[grid.beams.T, shape.sides.T]
+    inner = joints.size + np.arange(len(grid.beams) * (slabs - 1) * wide * high)
+    inner = inner.reshape(-1, slabs - 1, wide, high)
+    return joints, np.concatenate([start[:, None], inner, end[:, None, ::-1]], axis=1)
+
+
+def _cells(vertices: Indices) -> tuple[Indices, Indices]:
+    """Return the bricks (E, 8) between vertices (M, ., ., .), and (E, 4) where each one lies."""
+    m, a, b, c = np.array(vertices.shape) - [0, 1, 1, 1]
+    where = np.moveaxis(np.indices((m, a, b, c)), 0, -1).reshape(-1, 4)
+    corners = MeshHex.elem.refdom.p.T.astype(int)
+    k, x, y, z = (where[:, None, :] + np.pad(corners, ((0, 0), (1, 0)))).transpose(2, 0, 1)
+    return vertices[k, x, y, z], where
+
+
+def _rule(section: Section, layout: Layout) -> tuple[Array, Array]:
+    """Return the integration points (3, Q) of a brick and their weights (Q,), adding to one.
+
+    Two Gauss points each way: the reduced rule of a 20-node brick. A brick that spans the whole
+    section has four across, one amid each shell and two in the core, set so that the rule is
+    still exact to third degree.
+    """
+    gauss = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])
+    across = gauss
+    shell = section.shell / section.width
+    if layout.core == 0 and shell:
+        outer = (1 - shell) / 2
+        inner = np.sqrt((1 / 12 - 2 * shell * outer**2) / (1 - 2 * shell))
+        if not inner < 0.5 - shell:
+            raise InputError(
+                f"shells of {section.shell} mm are too wide for one brick across "
+                f"{section.width} mm; use a layout with core = 1"
+            )
+        across = (
+            0.5 + np.array([-outer, -inner, inner, outer]),
+            np.array([shell, 0.5 - shell, 0.5 - shell, shell]),
+        )
+    axes = (gauss, across, gauss)
+    points = np.stack(np.meshgrid(*(p for p, _ in axes), indexing="ij")).reshape(3, -1)
+    weights = np.prod(np.meshgrid(*(w for _, w in axes), indexing="ij"), axis=0).reshape(-1)
+    return points, weights

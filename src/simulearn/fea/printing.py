@@ -1,0 +1,69 @@
+"""How each point of a grid was printed, and so what it does when the stress is released.
+
+Printed plastic is stretched along its lines. Released, it shrinks by e along them and swells by
+nu e across them and in thickness, as the release of a uniaxial stress does. The active half of
+a beam is printed along the beam, the other half across it, the outermost row on either side
+(the shell) along it on both halves, and joints alternate both directions layer by layer.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.grid import Grid
+from simulearn.material import Material
+
+Array = NDArray[np.float64]
+
+
+def printing(
+    grid: Grid,
+    material: Material,
+    beam: NDArray[np.int64],
+    along: Array,
+    across: Array,
+    top: NDArray[np.bool_],
+) -> tuple[Array, Array, Array]:
+    """Return the printing frame, released strain and printed-in stress of E bricks.
+
+    Args:
+        grid: the design.
+        material: its material system.
+        beam: (E,) the beam of each brick, -1 in a joint.
+        along: (E,) place along the beam, 0 to 1.
+        across: (E, Q) places of the brick's integration points across the section, 0 to 1.
+        top: (E,) whether the brick lies in the top half.
+
+    Returns:
+        angle (E,) of the beam from +x; strain (E, Q, 3) along, across and in thickness; printed-in
+        stress (E, Q, 3) MPa in the same axes.
+    """
+    nu = material.law.poisson
+    e = material.shrinkage
+    kinds = ("joint", "shell", "active", "passive")
+    strain = np.array(
+        [
+            np.array([nu - 1, nu - 1, 2 * nu]) * e.joint,
+            np.array([-1, nu, nu]) * e.shell,
+            np.array([-1, nu, nu]) * e.active,
+            np.array([nu, -1, nu]) * e.passive,
+        ]
+    )
+    stress = np.array(
+        [
+            [e.stress_joint, e.stress_joint, 0],
+            [e.stress_shell, 0, 0],
+            [e.stress_active, 0, 0],
+            [0, e.stress_passive, 0],
+        ]
+    )
+    ratio = grid.actuators[beam]
+    active = (abs(along - 0.5) < abs(ratio) / 2) & (np.where(top, 1, -1) == np.sign(ratio))
+    shell = material.section.shell / material.section.width
+    kind = np.where(abs(across - 0.5) > 0.5 - shell, kinds.index("shell"), -1)
+    half = np.where(active, kinds.index("active"), kinds.index("passive"))
+    kind = np.where(kind < 0, half[:, None], kind)
+    kind[beam < 0] = kinds.index("joint")
+
+    start, end = grid.joints[grid.beams.T]
+    angle = np.arctan2(*(end - start).T[::-1])
+    return np.where(beam < 0, 0.0, angle[beam]), strain[kind], stress[kind]
