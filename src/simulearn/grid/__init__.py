@@ -1,6 +1,38 @@
 """The grid that a designer draws: its type, outline, rules, file and library."""
 
+from simulearn.grid.cleaning import clean
+from simulearn.grid.designs import Rules, draw, draw_valid
 from simulearn.grid.grid import Grid
-from simulearn.grid.outline import Outline, outline
+from simulearn.grid.gridfile import grid_from_dict, grid_to_dict, read_grid, write_grid
+from simulearn.grid.lattice import drop_beams, lattice
+from simulearn.grid.library import library, make
+from simulearn.grid.outline import JointOutline, Outline, beams_at, joint_outline, outline
+from simulearn.grid.sketch import sketch
+from simulearn.grid.structure import Message
+from simulearn.grid.validation import TrainingRange, Validation, validate
 
-__all__ = ["Grid", "Outline", "outline"]
+__all__ = [
+    "Grid",
+    "JointOutline",
+    "Message",
+    "Outline",
+    "Rules",
+    "TrainingRange",
+    "Validation",
+    "beams_at",
+    "clean",
+    "draw",
+    "draw_valid",
+    "drop_beams",
+    "grid_from_dict",
+    "grid_to_dict",
+    "joint_outline",
+    "lattice",
+    "library",
+    "make",
+    "outline",
+    "read_grid",
+    "sketch",
+    "validate",
+    "write_grid",
+]

@@ -19,6 +19,7 @@ from simulearn.grid.grid import Grid
 from simulearn.material import Section
 
 Point = tuple[float, float]
+End = tuple[int, int]  # (beam, 0) is the start of a beam, (beam, 1) its end
 
 # Angles closer than this are equal: far above rounding, far below what anyone draws (radians).
 TIE = 1e-9
@@ -44,6 +45,26 @@ class Outline:
     beams: NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class JointOutline:
+    """Corners of one joint.
+
+    Attributes:
+        corners: four (x, y), mm, in the order of `Outline.joints`.
+        sides: the side that each beam end meets.
+    """
+
+    corners: list[Point]
+    sides: dict[End, int]
+
+    def face(self, end: End) -> tuple[Point, Point]:
+        """Return the two corners (mm) that a beam end meets, right and left of the beam."""
+        side = self.sides[end]
+        a, b = self.corners[side], self.corners[(side + 1) % 4]
+        # Looking outwards from a beam's end joint is looking back along the beam.
+        return (b, a) if end[1] else (a, b)
+
+
 def outline(grid: Grid, section: Section) -> Outline:
     """Return the outline of a grid whose beams have the given section.
 
@@ -54,33 +75,33 @@ def outline(grid: Grid, section: Section) -> Outline:
     Raises:
         InputError: a joint has no sound outline; the message names the joint.
     """
-    joints = np.empty((len(grid.joints), 4, 2))
-    sides = np.empty((len(grid.beams), 2), dtype=np.int64)
-    for k, meeting in enumerate(beams_at(grid)):
-        joints[k], met = joint_outline(grid, section, k, meeting)
-        for (beam, end), side in met.items():
-            sides[beam, end] = side
-    right = joints[grid.beams, sides]
-    left = joints[grid.beams, (sides + 1) % 4]
-    beams = np.stack([right, left], axis=2)
-    # Looking outwards from its end joint is looking back along the beam.
-    beams[:, 1] = beams[:, 1, ::-1]
-    return Outline(joints, sides, beams)
+    joints = [joint_outline(grid, section, k, meeting) for k, meeting in enumerate(beams_at(grid))]
+    ends = [
+        [(joints[joint], (beam, end)) for end, joint in enumerate(pair)]
+        for beam, pair in enumerate(grid.beams.tolist())
+    ]
+    return Outline(
+        joints=np.array([joint.corners for joint in joints]).reshape(-1, 4, 2),
+        sides=np.array(
+            [[joint.sides[end] for joint, end in pair] for pair in ends], dtype=np.int64
+        ).reshape(-1, 2),
+        beams=np.array([[joint.face(end) for joint, end in pair] for pair in ends]).reshape(
+            -1, 2, 2, 2
+        ),
+    )
 
 
-def beams_at(grid: Grid) -> list[list[tuple[int, int]]]:
+def beams_at(grid: Grid) -> list[list[End]]:
     """Return for each joint the beams that meet there as (beam, end), end 0 being its start."""
-    meeting: list[list[tuple[int, int]]] = [[] for _ in grid.joints]
+    meeting: list[list[End]] = [[] for _ in grid.joints]
     for beam, ends in enumerate(grid.beams.tolist()):
         for end, joint in enumerate(ends):
             meeting[joint].append((beam, end))
     return meeting
 
 
-def joint_outline(
-    grid: Grid, section: Section, joint: int, meeting: list[tuple[int, int]]
-) -> tuple[list[Point], dict[tuple[int, int], int]]:
-    """Return the four corners of a joint (mm) and the side that each of its beams meets.
+def joint_outline(grid: Grid, section: Section, joint: int, meeting: list[End]) -> JointOutline:
+    """Return the outline of one joint.
 
     Args:
         grid: the grid.
@@ -108,24 +129,24 @@ def joint_outline(
     beams = [beam for _, (beam, _) in leaving]
     for k, gap in enumerate(gaps):
         if gap < TIE:
-            first, second = sorted((beams[k], beams[(k + 1) % len(beams)]))
-            raise InputError(f"beams {first} and {second} leave joint {joint} in one direction")
+            a, b = sorted((beams[k], beams[(k + 1) % len(beams)]))
+            raise InputError(f"beams {a} and {b} leave joint {joint} in one direction")
 
     half = section.width / 2
     corners: list[Point] = []
-    side: dict[tuple[int, int], int] = {}
-    for (angle, end_), gap, n in zip(leaving, gaps, _parts(gaps, beams), strict=True):
-        side[end_] = len(corners) - 1  # begins at the corner before
+    side: dict[End, int] = {}
+    for (angle, leaves), gap, n in zip(leaving, gaps, _parts(gaps, beams), strict=True):
+        side[leaves] = len(corners) - 1  # begins at the corner before
         for k in range(n):
             bisector = angle + gap / n * (k + 0.5)
             reach = half / sin(gap / n / 2)
             corners.append((reach * cos(bisector), reach * sin(bisector)))
-    first_ = min(range(4), key=lambda k: (atan2(*corners[k][::-1]) + TIE) % (2 * pi))
-    corners = corners[first_:] + corners[:first_]
+    first = min(range(4), key=lambda k: (atan2(*corners[k][::-1]) + TIE) % (2 * pi))
+    corners = corners[first:] + corners[:first]
     _check(joint, corners)
-    return (
+    return JointOutline(
         [(x + u, y + v) for u, v in corners],
-        {end: (k - first_) % 4 for end, k in side.items()},
+        {end: (k - first) % 4 for end, k in side.items()},
     )
 
 

@@ -1,0 +1,120 @@
+"""Random designs to learn from: a lattice with its joints moved about and actuators drawn.
+
+The rules are those of the paper's authors; each is a parameter. A draw depends on the seed and
+its number only, so that any design of a set can be drawn again alone and on any machine.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import cos, pi, sin, sqrt
+
+import numpy as np
+
+from simulearn.errors import InputError
+from simulearn.grid.grid import Grid
+from simulearn.grid.lattice import lattice
+from simulearn.grid.outline import outline
+from simulearn.grid.validation import validate
+from simulearn.material import Material, load_material
+
+MOST_REDRAWS = 1000
+
+
+@dataclass(frozen=True)
+class Rules:
+    """How designs are drawn.
+
+    Attributes:
+        cells: number of cells along x and y.
+        length: least and most reference length of the beams, mm.
+        jitter: a joint moves by U(0, jitter) sqrt(U(0, 1)) mm at a uniform angle.
+        inactive: probability that a beam has no actuator.
+        ratios: the lengths that an actuator may have, rising; drawn evenly.
+        top: probability that an actuator is in the top half.
+        shortest: a shorter actuator is raised to the next of `ratios` that is not, mm.
+        material: name of the material system.
+    """
+
+    cells: tuple[int, int] = (2, 2)
+    length: tuple[float, float] = (40.0, 75.0)
+    jitter: float = 30.0
+    inactive: float = 0.33
+    ratios: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)
+    top: float = 0.5
+    shortest: float = 10.0
+    material: str = "pla-hot-water"
+
+
+def draw(rules: Rules, seed: int, k: int, redraw: int = 0) -> Grid:
+    """Return design k of a seed, valid or not, its fixed joint at the origin.
+
+    Args:
+        rules: how to draw.
+        seed: names the set of designs.
+        k: number of the design in the set.
+        redraw: how often this design has been drawn before.
+    """
+    source = np.random.SeedSequence(seed, spawn_key=(k, redraw))
+    # Uniform numbers in [0, 1) only: their bits are the same with every version of numpy.
+    uniform = np.random.Generator(np.random.Philox(source)).random
+    least, most = rules.length
+    plain = lattice(rules.cells, least + (most - least) * uniform(), rules.material)
+    joints = plain.joints.copy()
+    for joint in joints:
+        radius = rules.jitter * uniform() * sqrt(uniform())
+        angle = 2 * pi * uniform()
+        joint += radius * cos(angle), radius * sin(angle)
+    joints[plain.fixed] = 0.0
+    # Sines differ in their last bit between machines; a nanometre hides it.
+    joints = joints.round(6)
+
+    ratios = np.zeros(len(plain.beams))
+    for beam in range(len(ratios)):
+        active, size, half = uniform(), uniform(), uniform()
+        if active >= rules.inactive:
+            ratio = rules.ratios[int(size * len(rules.ratios))]
+            ratios[beam] = ratio if half < rules.top else -ratio
+    grid = Grid(joints, plain.beams, ratios, plain.fixed, rules.material)
+    return _lengthened(grid, rules)
+
+
+def draw_valid(rules: Rules, seed: int, k: int) -> tuple[Grid, int]:
+    """Return design k of a seed, drawn again until it is valid, and how often it was redrawn.
+
+    Raises:
+        InputError: the rules hardly ever give a valid design.
+    """
+    for redraw in range(MOST_REDRAWS + 1):
+        grid = draw(rules, seed, k, redraw)
+        if validate(grid, _material(rules.material)).valid:
+            return grid, redraw
+    raise InputError(f"{rules} gave no valid design in {MOST_REDRAWS} redraws")
+
+
+def _lengthened(grid: Grid, rules: Rules) -> Grid:
+    """Return the grid with actuators that are long enough; where none can be, without."""
+    try:
+        shape = outline(grid, _material(rules.material).section)
+    except InputError:
+        return grid  # no lengths to go by, and not valid anyhow
+    # The middle of a joint's side lies on the axis.
+    net = np.linalg.norm(np.diff(shape.beams.mean(axis=2), axis=1)[:, 0], axis=1)
+    ratios = [
+        next(
+            (
+                float(np.copysign(larger, ratio))
+                for larger in sorted(rules.ratios)
+                if larger >= abs(ratio) and larger * length >= rules.shortest
+            ),
+            0.0,
+        )
+        if ratio
+        else 0.0
+        for ratio, length in zip(grid.actuators, net, strict=True)
+    ]
+    return Grid(grid.joints, grid.beams, ratios, grid.fixed, grid.material)
+
+
+@lru_cache
+def _material(name: str) -> Material:
+    return load_material(name)

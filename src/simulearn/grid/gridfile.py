@@ -1,0 +1,139 @@
+"""The grid file: JSON with the keys schema, joints, beams, actuators, fixed and material."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from simulearn.errors import InputError
+from simulearn.files import read_text, replacing
+from simulearn.grid.grid import Grid
+from simulearn.grid.structure import structure_errors
+
+SCHEMA = "simulearn.grid/1"
+
+Index = Annotated[int, Field(ge=0, lt=2**31)]  # the type's bound; the grid's is checked later
+
+
+class _GridFile(BaseModel):
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+    schema_: Literal["simulearn.grid/1"] = Field(alias="schema")
+    # Lists, since strict validation takes no list for a tuple.
+    joints: list[Annotated[list[float], Field(min_length=2, max_length=2)]]
+    beams: list[Annotated[list[Index], Field(min_length=2, max_length=2)]]
+    actuators: list[float]
+    fixed: Index
+    material: Annotated[str, Field(min_length=1)] = "pla-hot-water"
+
+
+KEYS = {
+    "schema": f'this program reads "{SCHEMA}"',
+    "joints": "joints are a list of [x, y], finite numbers in mm",
+    "beams": "beams are a list of [i, j], indices of joints counted from 0",
+    "actuators": "actuators are a list of ratios in [-1, 1], one for each beam",
+    "fixed": "the fixed joint is an index counted from 0",
+    "material": "a material is the name of a material system or the path of its TOML file",
+}
+
+
+def read_grid(path: Path | str) -> Grid:
+    """Return the grid in a file.
+
+    Raises:
+        InputError: the file cannot be read or does not describe a grid; one line says where.
+    """
+    text = read_text(path)
+    try:
+        data = json.loads(text, parse_constant=_no_constant, object_pairs_hook=_no_twins)
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise InputError(f"{path}: is not valid JSON at {place}: {error.msg}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: is not a grid; its lists are nested too deeply") from error
+    except ValueError as error:  # of the two hooks, or a number of thousands of digits
+        raise InputError(f"{path}: {error}") from error
+    try:
+        return grid_from_dict(data)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def write_grid(grid: Grid, path: Path | str) -> None:
+    """Write a grid to a file, whole or not at all.
+
+    Raises:
+        InputError: the file cannot be written, or the grid could not be read back.
+    """
+    data = grid_to_dict(grid)
+    grid_from_dict(data)
+    lines = (f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in data.items())
+    with replacing(path) as temporary:
+        temporary.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+
+
+def grid_from_dict(data: Any) -> Grid:
+    """Return the grid that a dict with the file's keys describes.
+
+    Raises:
+        InputError: a key, type, length, index or number is wrong; one line says which.
+    """
+    try:
+        file = _GridFile.model_validate(data)
+    except ValidationError as error:
+        raise InputError(_line(error.errors(include_url=False)[0])) from error
+    if not file.material.isprintable():
+        raise InputError(f"material is {_shown(file.material)}; {KEYS['material']}")
+    grid = Grid(file.joints, file.beams, file.actuators, file.fixed, file.material)
+    for wrong in structure_errors(grid):
+        raise InputError(wrong.message)
+    return grid
+
+
+def grid_to_dict(grid: Grid) -> dict[str, Any]:
+    """Return a grid as plain lists and numbers under the file's keys."""
+    return {
+        "schema": SCHEMA,
+        "joints": grid.joints.tolist(),
+        "beams": grid.beams.tolist(),
+        "actuators": grid.actuators.tolist(),
+        "fixed": grid.fixed,
+        "material": grid.material,
+    }
+
+
+def _no_constant(name: str) -> None:
+    raise ValueError(f"{name} is not a number that a grid may hold")
+
+
+def _no_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twin = next(key for key in keys if keys.count(key) > 1)
+        raise ValueError(f"the key {_shown(twin)} occurs twice")
+    return data
+
+
+def _line(error: Any) -> str:
+    """Return one of pydantic's errors in our words."""
+    place, value = error["loc"], error["input"]
+    if not place:
+        return f"is {_shown(value)}; a grid is an object with the keys {', '.join(KEYS)}"
+    key = str(place[0])
+    if error["type"] == "missing":
+        return f"{key} is missing; {KEYS[key]}"
+    if key not in KEYS:
+        return f"{_shown(place[0])} is not a key of a grid; its keys are {', '.join(KEYS)}"
+    where = key + "".join(f"[{k}]" for k in place[1:])
+    return f"{where} is {_shown(value)}; {KEYS[key]}"
+
+
+def _shown(value: Any, most: int = 40) -> str:
+    """Return a value as short, plain text on one line."""
+    try:
+        text = json.dumps(value)
+    except (TypeError, ValueError, RecursionError):
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= most else text[: most - 3] + "..."

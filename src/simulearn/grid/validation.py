@@ -1,0 +1,243 @@
+"""The rules of a design: what cannot be printed and simulated, and what had better be looked at.
+
+Errors forbid: the grid has no sound outline, or parts of it collide, or an actuator is too short
+to work. Warnings tell: a length is unusual, or something dangles and is removed. A grid without
+errors can be meshed.
+
+Rules and limits: Yang et al., SimuLearn, UIST 2020, Figure 15, and the authors' published tool.
+"""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.grid.cleaning import fixed_removed, kept, removals
+from simulearn.grid.grid import Grid
+from simulearn.grid.outline import JointOutline, beams_at, joint_outline
+from simulearn.grid.overlap import overlaps
+from simulearn.grid.structure import Message, structure_errors
+from simulearn.material import Material
+from simulearn.material.material import Limits
+
+# Lengths this close are equal, so that a length at its limit passes whatever rounding did (mm).
+ROUNDING = 1e-6
+# Joints closer than this are at one place (mm).
+ONE_PLACE = 1e-3
+# The shorter long edge of a beam must leave something between its joints (mm).
+SHORTEST_EDGE = 1.0
+
+
+@dataclass(frozen=True)
+class TrainingRange:
+    """What a learned model has seen in training, each as (least, most), mm.
+
+    Attributes:
+        dimension: largest distance from the fixed joint to another joint.
+        beam_length: length of a beam between the centres of its joints.
+    """
+
+    dimension: tuple[float, float]
+    beam_length: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Validation:
+    """What validation has to say: errors forbid, warnings do not."""
+
+    errors: tuple[Message, ...]
+    warnings: tuple[Message, ...]
+
+    @property
+    def valid(self) -> bool:
+        """Whether there is no error."""
+        return not self.errors
+
+    def to_dict(self) -> dict[str, list[dict[str, Any]]]:
+        """Return errors and warnings as plain dicts with code, where and message."""
+        return {
+            "errors": [asdict(message) for message in self.errors],
+            "warnings": [asdict(message) for message in self.warnings],
+        }
+
+
+def validate(
+    grid: Grid,
+    material: Material,
+    limits: Limits | None = None,
+    training: TrainingRange | None = None,
+) -> Validation:
+    """Return all errors and warnings about a design.
+
+    Args:
+        grid: the design; joints and beams keep its numbers in the messages.
+        material: its material system, for section and limits.
+        limits: other limits than the material's.
+        training: what the model that will answer has seen; its limits replace the material's.
+    """
+    if wrong := structure_errors(grid):
+        return Validation(tuple(wrong), ())
+    limits = limits or material.limits
+    joints, beams = kept(grid)
+    errors = list(_layout(grid, joints, beams))
+    in_place = not errors
+    shapes: dict[int, JointOutline] = {}
+    for k, meeting in enumerate(beams_at(grid)):
+        staying = [end for end in meeting if beams[end[0]]]
+        if not staying:
+            continue
+        try:
+            shapes[k] = joint_outline(grid, material.section, k, staying)
+        except InputError as error:
+            code = "joint-valence" if len(staying) > 4 else "joint-outline"
+            errors.append(Message(code, f"joint {k}", str(error)))
+    quads = {
+        b: np.array([shapes[i].face((b, 0)), shapes[j].face((b, 1))])
+        for b, (i, j) in enumerate(grid.beams.tolist())
+        if beams[b] and i in shapes and j in shapes
+    }
+    warnings = removals(grid)
+    for b, quad in quads.items():
+        errors += _beam_errors(grid, b, quad, limits)
+        warnings += _beam_warnings(grid, b, quad, limits, training)
+    if in_place:
+        roomy = {b: q for b, q in quads.items() if _lengths(grid, b, q)[2] >= SHORTEST_EDGE}
+        errors += _collisions(shapes, roomy)
+        if training is not None:
+            warnings += _size(grid, joints, training)
+    return Validation(tuple(errors), tuple(warnings))
+
+
+def _layout(grid: Grid, joints: NDArray[np.bool_], beams: NDArray[np.bool_]) -> Iterator[Message]:
+    """Yield errors of the grid as a whole: its places and its connections."""
+    apart = np.linalg.norm(grid.joints[:, None] - grid.joints[None], axis=2)
+    for i, j in np.argwhere(np.triu(apart < ONE_PLACE, k=1)).tolist():
+        yield Message(
+            "joints-coincide",
+            f"joint {j}",
+            f"joint {j} lies where joint {i} lies, {apart[i, j]:.3g} mm apart; "
+            f"joints lie at least {ONE_PLACE:g} mm apart",
+        )
+    if not len(grid.beams):
+        yield Message("no-beams", "grid", "the grid has 0 beams; it needs some that close a loop")
+        return
+    if not beams.any():
+        yield Message(
+            "no-beams",
+            "grid",
+            f"none of the {len(beams)} beams closes a loop, so all of them dangle and are removed",
+        )
+        return
+    if not joints[grid.fixed]:
+        yield Message("fixed-removed", f"joint {grid.fixed}", fixed_removed(grid))
+    parts = _parts(grid)
+    if len(parts) > 1:
+        others = ", ".join(str(k) for k in sorted(set().union(*parts[1:])))
+        yield Message(
+            "disconnected",
+            "grid",
+            f"the grid is in {len(parts)} parts; no beam leads to joints {others}",
+        )
+
+
+def _parts(grid: Grid) -> list[set[int]]:
+    """Return the sets of joints that beams connect, the fixed joint's first."""
+    parts: list[set[int]] = []
+    for pair in grid.beams.tolist():
+        meeting = [part for part in parts if not part.isdisjoint(pair)]
+        parts = [part for part in parts if part.isdisjoint(pair)]
+        parts.append(set(pair).union(*meeting))
+    return sorted(parts, key=lambda part: (grid.fixed not in part, min(part)))
+
+
+def _lengths(grid: Grid, beam: int, quad: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Return a beam's length centre to centre, its net length and its shorter edge, mm."""
+    start, end = grid.joints[grid.beams[beam]]
+    length = float(np.linalg.norm(end - start))
+    edges = (quad[1] - quad[0]) @ (end - start) / length
+    # The middle of a joint's side lies on the axis.
+    return length, float(edges.mean()), float(edges.min())
+
+
+def _beam_errors(
+    grid: Grid, beam: int, quad: NDArray[np.float64], limits: Limits
+) -> Iterator[Message]:
+    """Yield errors of one beam: no room between its joints, or too short an actuator."""
+    _, net, edge = _lengths(grid, beam, quad)
+    if edge < SHORTEST_EDGE:
+        i, j = grid.beams[beam]
+        yield Message(
+            "joints-too-close",
+            f"beam {beam}",
+            f"beam {beam} is left an edge of {edge:.2f} mm between joints {i} and {j}; "
+            f"each edge needs at least {SHORTEST_EDGE:g} mm",
+        )
+        return
+    ratio = abs(float(grid.actuators[beam]))
+    if ratio and ratio * net < limits.actuator_length - ROUNDING:
+        yield Message(
+            "actuator-short",
+            f"beam {beam}",
+            f"the actuator of beam {beam} is {ratio * net:.2f} mm long (ratio {ratio:g} of "
+            f"{net:.2f} mm); an actuator is at least {limits.actuator_length:g} mm, or 0",
+        )
+
+
+def _beam_warnings(
+    grid: Grid,
+    beam: int,
+    quad: NDArray[np.float64],
+    limits: Limits,
+    training: TrainingRange | None,
+) -> Iterator[Message]:
+    """Yield warnings of one beam: an unusual length."""
+    length, net, _ = _lengths(grid, beam, quad)
+    least, most = training.beam_length if training else (0.0, limits.beam_length)
+    where = f"beam {beam}"
+    if length > most + ROUNDING:
+        yield Message(
+            "beam-long", where, f"{where} is {length:.2f} mm long; the limit is {most:g} mm"
+        )
+    if length < least - ROUNDING:
+        yield Message(
+            "beam-short", where, f"{where} is {length:.2f} mm long; at least {least:g} mm is usual"
+        )
+    if net < limits.beam_net_length - ROUNDING:
+        yield Message(
+            "beam-short",
+            where,
+            f"{where} is {net:.2f} mm long between its joints; "
+            f"at least {limits.beam_net_length:g} mm is usual",
+        )
+
+
+def _collisions(
+    shapes: dict[int, JointOutline], quads: dict[int, NDArray[np.float64]]
+) -> Iterator[Message]:
+    """Yield an error for each two parts of the outline that overlap."""
+    names = [f"joint {k}" for k in shapes] + [f"beam {b}" for b in quads]
+    # Counter-clockwise: start right, end right, end left, start left.
+    around = [quad[[0, 1, 1, 0], [0, 0, 1, 1]] for quad in quads.values()]
+    pieces = np.array([*(shape.corners for shape in shapes.values()), *around])
+    for a, b in overlaps(pieces.reshape(-1, 4, 2)).tolist():
+        yield Message(
+            "overlap",
+            names[b],
+            f"{names[a]} and {names[b]} overlap; parts of a grid meet only end to end",
+        )
+
+
+def _size(grid: Grid, joints: NDArray[np.bool_], training: TrainingRange) -> Iterator[Message]:
+    """Yield a warning when the grid is smaller or larger than the model's training data."""
+    away = np.linalg.norm(grid.joints[joints] - grid.joints[grid.fixed], axis=1).max()
+    least, most = training.dimension
+    if not least - ROUNDING <= away <= most + ROUNDING:
+        yield Message(
+            "grid-size",
+            "grid",
+            f"the grid reaches {away:.2f} mm from its fixed joint; "
+            f"the model was trained from {least:g} to {most:g} mm",
+        )
