@@ -83,7 +83,7 @@ def validate(
     limits = limits or material.limits
     joints, beams = kept(grid)
     errors = list(_layout(grid, joints, beams))
-    in_place = not errors
+    in_place = all(error.code != "joints-coincide" for error in errors)
     shapes: dict[int, JointOutline] = {}
     for k, meeting in enumerate(beams_at(grid)):
         staying = [end for end in meeting if beams[end[0]]]

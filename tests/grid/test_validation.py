@@ -1,0 +1,312 @@
+"""Validation: each rule breaks for one grid made to break it, and says by how much."""
+
+import numpy as np
+import pytest
+from grids import MATERIAL, SECTION, drawn, moved, star
+from hypothesis import given
+
+from simulearn.errors import InputError
+from simulearn.grid import (
+    Grid,
+    Rules,
+    TrainingRange,
+    clean,
+    draw,
+    drop_beams,
+    lattice,
+    library,
+    make,
+    outline,
+    validate,
+)
+
+FLAT = lattice()  # 2x2 cells, joint 4 fixed at the origin
+
+
+def errors(grid, **options):
+    return [(e.code, e.where, e.message) for e in validate(grid, MATERIAL, **options).errors]
+
+
+def warnings(grid, **options):
+    return [(w.code, w.where, w.message) for w in validate(grid, MATERIAL, **options).warnings]
+
+
+def place(grid, joint, x, y):
+    joints = grid.joints.copy()
+    joints[joint] = x, y
+    return moved(grid, joints=joints)
+
+
+def only(messages):
+    (message,) = messages
+    return message
+
+
+@pytest.mark.parametrize("cells", [(1, 1), (2, 2), (2, 3), (3, 3), (4, 1)])
+@pytest.mark.parametrize("name", library())
+def test_the_library_is_valid_without_a_warning(name, cells):
+    found = validate(make(name, cells), MATERIAL)
+    assert found.valid
+    assert found.to_dict() == {"errors": [], "warnings": []}
+
+
+@given(drawn())
+def test_what_is_valid_can_be_outlined_when_clean(grid):
+    found = validate(grid, MATERIAL)
+    if found.valid:
+        cleaned, removed = clean(grid)
+        outline(cleaned, SECTION)
+        again = validate(cleaned, MATERIAL)
+        assert again.valid
+        assert not [w for w in again.warnings if "removed" in w.message]
+        assert set(removed) <= set(found.warnings)
+
+
+# Numbers and indices
+
+
+@pytest.mark.parametrize(
+    ("grid", "code", "where", "message"),
+    [
+        (moved(FLAT, actuators=[0.0]), "actuator-count", "grid", "actuators has 1 ratios for 12"),
+        (moved(FLAT, joints=[[np.nan, 0]] + [[0, 0]] * 8), "joint-place", "joint 0", "nan"),
+        (moved(FLAT, beams=[[0, 9], *FLAT.beams[1:].tolist()]), "beam-index", "beam 0", "0 to 8"),
+        (
+            moved(FLAT, beams=[[3, 3], *FLAT.beams[1:].tolist()]),
+            "beam-to-itself",
+            "beam 0",
+            "[3, 3]",
+        ),
+        (
+            moved(FLAT, beams=[[3, 0], *FLAT.beams[1:].tolist()]),
+            "beam-duplicate",
+            "beam 1",
+            "beam 0",
+        ),
+        (moved(FLAT, actuators=[1.5] + [0] * 11), "actuator-ratio", "beam 0", "is 1.5; a ratio"),
+        (moved(FLAT, actuators=[np.nan] + [0] * 11), "actuator-ratio", "beam 0", "is nan; a ratio"),
+        (moved(FLAT, fixed=9), "fixed-index", "grid", "fixed is 9; joints are numbered 0 to 8"),
+        (moved(FLAT, fixed=-1), "fixed-index", "grid", "fixed is -1"),
+    ],
+)
+def test_numbers_and_indices(grid, code, where, message):
+    found = only(errors(grid))
+    assert found[:2] == (code, where)
+    assert message in found[2]
+
+
+# The grid as a whole
+
+
+def test_a_grid_needs_beams():
+    assert errors(Grid([[0, 0]], [], [], 0))[0][:2] == ("no-beams", "grid")
+
+
+def test_a_tree_dangles_altogether():
+    code, _, message = only(errors(star(0, 90, 180)))
+    assert code == "no-beams"
+    assert "none of the 3 beams closes a loop" in message
+
+
+def test_two_joints_at_one_place():
+    grid = place(FLAT, 8, *FLAT.joints[5])
+    code, where, message = errors(grid)[0]
+    assert (code, where) == ("joints-coincide", "joint 8")
+    assert "joint 8 lies where joint 5 lies, 0 mm apart" in message
+    assert "overlap" not in [e[0] for e in errors(grid)]
+
+
+def test_a_grid_in_two_parts():
+    square = lattice((1, 1))
+    joints = np.r_[square.joints, square.joints + 200]
+    two = Grid(joints, np.r_[square.beams, square.beams + 4], np.zeros(8), 0)
+    assert only(errors(two)) == (
+        "disconnected",
+        "grid",
+        "the grid is in 2 parts; no beam leads to joints 4, 5, 6, 7",
+    )
+
+
+def test_a_part_that_dangles_by_itself_is_a_part_too():
+    square = lattice((1, 1))
+    joints = np.r_[square.joints, [[300, 0], [360, 0]]]
+    two = Grid(joints, [*square.beams.tolist(), [4, 5]], np.zeros(5), 0)
+    assert only(errors(two))[0] == "disconnected"
+
+
+# Joints
+
+
+def test_a_joint_takes_four_beams():
+    # The spokes of a wheel with five corners.
+    rim = star(0, 72, 144, 216, 288)
+    beams = [*rim.beams.tolist(), *([k + 1, (k + 1) % 5 + 1] for k in range(5))]
+    wheel = Grid(rim.joints, beams, np.zeros(10), 0)
+    assert only(errors(wheel)) == (
+        "joint-valence",
+        "joint 0",
+        "joint 0 has 5 beams; a joint takes 2 to 4",
+    )
+
+
+def test_every_joint_without_an_outline_is_named():
+    # Two corners pulled so far out that their beams leave at a few degrees.
+    grid = place(place(FLAT, 0, -600, -600), 8, 600, 600)
+    found = [e for e in errors(grid) if e[0] == "joint-outline"]
+    assert [where for _, where, _ in found] == ["joint 0", "joint 8"]
+    for _, where, message in found:
+        assert message.startswith(where + " has a corner of ")
+        assert message.endswith("each corner has 15 to 165")
+
+
+def test_two_beams_in_one_direction():
+    # Joint 1 on the line of beam 0-2 and on that of 0-3.
+    grid = Grid([[0, 0], [60, 0], [120, 0], [60, 60]], [[0, 1], [0, 2], [1, 3], [2, 3]], [0] * 4, 0)
+    found = errors(grid)
+    assert ("joint-outline", "joint 0", "beams 0 and 1 leave joint 0 in one direction") in found
+
+
+# Beams and actuators
+
+
+def test_joints_too_close():
+    small = lattice((2, 2), 8.0)
+    found = errors(small)
+    assert len(found) == 12
+    assert found[0] == (
+        "joints-too-close",
+        "beam 0",
+        "beam 0 is left an edge of 0.80 mm between joints 0 and 1; each edge needs at least 1 mm",
+    )
+
+
+@pytest.mark.parametrize(("net", "wrong"), [(39.9, True), (40.0, False), (41.0, False)])
+def test_an_actuator_has_ten_millimetres(net, wrong):
+    grid = lattice((2, 2), net + SECTION.width)
+    grid = moved(grid, actuators=[0.0, -0.25] + [0.0] * 10)
+    assert bool(errors(grid)) == wrong
+    if wrong:
+        assert only(errors(grid)) == (
+            "actuator-short",
+            "beam 1",
+            "the actuator of beam 1 is 9.97 mm long (ratio 0.25 of 39.90 mm); "
+            "an actuator is at least 10 mm, or 0",
+        )
+
+
+def test_ratios_need_not_be_quarters():
+    assert not errors(moved(FLAT, actuators=np.linspace(0.3, 0.9, 12)))
+
+
+def test_other_limits_than_the_materials():
+    limits = MATERIAL.limits.model_copy(update={"actuator_length": 20.0})
+    grid = moved(FLAT, actuators=[0.25] + [0.0] * 11)
+    assert not errors(grid)
+    assert only(errors(grid, limits=limits))[0] == "actuator-short"
+
+
+def test_long_and_short_beams_are_warned_of():
+    assert not validate(lattice((2, 2), 100.0), MATERIAL).warnings
+    assert warnings(lattice((1, 1), 110.0))[3] == (
+        "beam-long",
+        "beam 3",
+        "beam 3 is 110.00 mm long; the limit is 100 mm",
+    )
+    assert not validate(lattice((1, 1), 17.2), MATERIAL).warnings
+    short = lattice((1, 1), 16.0)
+    assert not errors(short)
+    assert warnings(short)[0] == (
+        "beam-short",
+        "beam 0",
+        "beam 0 is 8.80 mm long between its joints; at least 10 mm is usual",
+    )
+
+
+def test_the_training_range_replaces_the_limits():
+    seen = TrainingRange(dimension=(60.0, 90.0), beam_length=(50.0, 64.0))
+    found = warnings(FLAT, training=seen)
+    assert [w[0] for w in found] == ["beam-long"] * 12 + ["grid-size"]
+    assert found[-1][2] == (
+        "the grid reaches 91.92 mm from its fixed joint; the model was trained from 60 to 90 mm"
+    )
+    assert [w[0] for w in warnings(lattice((2, 2), 45.0), training=seen)] == ["beam-short"] * 12
+    assert not warnings(lattice((2, 2), 60.0), training=seen)
+
+
+# Overlap
+
+
+def test_beams_that_cross():
+    # A square whose diagonals are beams without a joint where they cross.
+    square = lattice((1, 1))
+    beams = [*square.beams.tolist(), [0, 3], [1, 2]]
+    crossed = Grid(square.joints, beams, np.zeros(6), 0)
+    assert (
+        "overlap",
+        "beam 5",
+        "beam 4 and beam 5 overlap; parts of a grid meet only end to end",
+    ) in (errors(crossed))
+
+
+def test_a_joint_on_a_beam():
+    # A square with a triangle hung on its upper corner; the triangle's tip touches beam 0.
+    square = lattice((1, 1), 80.0)
+    joints = np.r_[square.joints, [[40, 5]], [[40, 50]]]
+    beams = [*square.beams.tolist(), [3, 4], [4, 5], [5, 3]]
+    grid = Grid(joints, beams, np.zeros(7), 0)
+    assert only(errors(grid)) == (
+        "overlap",
+        "beam 0",
+        "joint 4 and beam 0 overlap; parts of a grid meet only end to end",
+    )
+    assert not errors(place(grid, 4, 40, 10))
+
+
+# Dangling beams
+
+
+def test_dangling_beams_are_removed_and_said_so():
+    # Joint 0 loses one beam, so the other dangles; its joint goes without saying.
+    grid = drop_beams(make("saddle"), {0})
+    found = validate(grid, MATERIAL)
+    assert found.valid
+    assert [(w.code, w.where, w.message) for w in found.warnings] == [
+        ("dangling-beam", "beam 0", "beam 0 dangles at one end and is removed")
+    ]
+    cleaned, removed = clean(grid)
+    assert list(found.warnings) == removed
+    assert (len(cleaned.joints), len(cleaned.beams), cleaned.fixed) == (8, 10, 3)
+    np.testing.assert_array_equal(cleaned.joints, grid.joints[1:])
+    np.testing.assert_array_equal(cleaned.actuators, grid.actuators[1:])
+    np.testing.assert_array_equal(cleaned.joints[cleaned.beams], grid.joints[grid.beams[1:]])
+
+
+def test_a_chain_of_dangling_beams_goes_altogether():
+    square = lattice((1, 1))
+    joints = np.r_[square.joints, square.joints[3] + [[50, 0], [100, 0], [400, 400]]]
+    tail = Grid(joints, [*square.beams.tolist(), [3, 4], [4, 5]], np.zeros(6), 0)
+    assert [w[:2] for w in warnings(tail)] == [
+        ("dangling-beam", "beam 4"),
+        ("dangling-beam", "beam 5"),
+        ("unused-joint", "joint 6"),
+    ]
+    assert len(clean(tail)[0].joints) == 4
+
+
+def test_a_fixed_joint_that_is_removed_is_an_error():
+    grid = moved(drop_beams(FLAT, {0}), fixed=0)
+    assert only(errors(grid))[:2] == ("fixed-removed", "joint 0")
+    with pytest.raises(InputError, match="joint 0 is fixed but is removed"):
+        clean(grid)
+
+
+def test_messages_keep_the_numbers_of_the_design():
+    grid = drop_beams(lattice((2, 2), 45.0), {0})  # removes joint 0, renumbering the rest
+    grid = moved(grid, actuators=[0.0] * 10 + [0.25])
+    assert only(errors(grid))[1] == "beam 10"
+
+
+@pytest.mark.parametrize("k", range(200))
+def test_few_random_designs_are_refused(k):
+    found = validate(draw(Rules(), 7, k), MATERIAL)
+    assert {e.code for e in found.errors} <= {"overlap", "joints-too-close", "joint-outline"}
