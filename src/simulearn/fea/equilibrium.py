@@ -8,6 +8,8 @@ beyond which the computation fails and says where: there is never a wrong answer
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +18,7 @@ from simulearn.fea import elimination
 from simulearn.fea.kernel import Points, carry, points_of, respond
 from simulearn.fea.laws import Law
 from simulearn.fea.solid import Solid
+from simulearn.fea.structure import structure_of
 
 Array = NDArray[np.float64]
 
@@ -32,7 +35,7 @@ class Control:
         mixed: carry the stress as an own unknown; without, it is plain Newton.
     """
 
-    tolerance: float = 1e-4
+    tolerance: float = 1e-3
     iterations: int = 15
     halvings: int = 6
     mixed: bool = True
@@ -76,7 +79,7 @@ class Equilibrium:
 
     def __post_init__(self) -> None:
         self.points: Points = points_of(self.solid)
-        self.structure = elimination.Structure.of(self.solid)
+        self.structure, self.skeleton = structure_of(self.solid)
         self.load = np.zeros_like(self.solid.nodes)
         self.load[:, 2] = -self.body_force * np.bincount(
             self.solid.bricks.ravel(), np.asarray(self.points.load).ravel(), len(self.load)
@@ -101,7 +104,8 @@ class Equilibrium:
             ComputationError: no equilibrium was found, however small the increment.
         """
         path = list(past)
-        step, done = 1.0, 0.0
+        # Without a past to extrapolate from, a short step finds the way.
+        step, done = (1.0 if len(path) > 1 or released == 0 else 0.25), 0.0
         start = np.array([path[-1].released, path[-1].gravity])
         goal = np.array([released, gravity])
         reason = ""
@@ -111,7 +115,7 @@ class Equilibrium:
             try:
                 path.append(self._increment(path, float(s), float(g)))
                 done = to
-                step *= 2
+                step = 1.0
             except NotConvergedError as error:
                 reason = str(error)
                 step /= 2
@@ -126,28 +130,47 @@ class Equilibrium:
 
     def _increment(self, path: list[State], s: float, g: float) -> State:
         u, carried = _extrapolate(path, s, g)
+        nodes = self.structure.blocks
+        least = 100.0  # mm
         for iteration in range(self.control.iterations):
-            stress = carried if self.control.mixed else None
-            response = respond(self.law, self.points, u[self.solid.bricks], s, stress)
-            out_of_balance = g * self.load - self._assemble(np.asarray(response.residual))
-            du = elimination.solve(self.structure, np.asarray(response.stiffness), out_of_balance)
+            response, condensed, out = _reduce(
+                self.law, self.points, self.structure, u, s, carried if self.control.mixed else None,
+                g * self.load, self.solid.bricks,
+            )
             self.iterations += 1
-            change = abs(du).max()
-            if not np.isfinite(change):
-                raise NotConvergedError("the stiffness broke down")
-            carried = np.asarray(carry(self.points, response, du[self.solid.bricks], s))
-            u = u + du
+            try:
+                joints = elimination.solve_joints(
+                    self.skeleton,
+                    np.array(condensed.blocks),
+                    condensed,
+                    np.asarray(out)[nodes].reshape(len(nodes), -1),
+                )
+            except np.linalg.LinAlgError as error:
+                raise NotConvergedError("the stiffness is singular") from error
+            u, carried, change = _update(
+                self.points, self.structure, response, condensed.levels, joints, u, s,
+                self.solid.bricks,
+            )
             if change < self.control.tolerance:
-                return State(s, g, u, carried)
-            if change > 1e3:
+                return State(s, g, np.asarray(u), np.asarray(carried))
+            if not change < 4 * least:
                 break
+            least = min(least, change)
         raise NotConvergedError(f"still moving by {change:.2g} mm after {iteration + 1} iterations")
 
-    def _assemble(self, residual: Array) -> Array:
-        nodes = self.solid.bricks.ravel()
-        return np.stack(
-            [np.bincount(nodes, residual[..., k].ravel(), len(self.load)) for k in range(3)], axis=1
-        )
+
+@jax.jit
+def _reduce(law, points, structure, u, s, carried, load, bricks):
+    response = respond(law, points, u[bricks], s, carried)
+    out = load.at[bricks].add(-response.residual)
+    return response, elimination.condense(structure, response.entries, out), out
+
+
+@jax.jit
+def _update(points, structure, response, levels, joints, u, s, bricks):
+    du = elimination.expand(structure, levels, joints, len(u))
+    change = jnp.where(jnp.isfinite(du).all(), abs(du).max(), jnp.inf)
+    return u + du, carry(points, response, du[bricks], s), change
 
 
 def _extrapolate(path: list[State], s: float, g: float) -> tuple[Array, Array]:

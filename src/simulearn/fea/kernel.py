@@ -21,6 +21,7 @@ from skfem import Basis, ElementHexS2, MeshHex
 from simulearn.fea.laws import Law
 from simulearn.fea.laws.law import inverse_transpose
 from simulearn.fea.solid import Solid
+from simulearn.fea.structure import PAIRS
 
 jax.config.update("jax_enable_x64", True)
 
@@ -47,16 +48,17 @@ class Response(NamedTuple):
     """Answer of the bricks to displacements.
 
     Attributes:
-        stiffness: (E, 60, 60) tangent with the carried stress in its geometric part, N/mm.
+        entries: (E, 6, 20, 20) tangent stiffness for PAIRS of displacement components, N/mm, with
+            the carried stress in its geometric part.
         residual: (E, 20, 3) internal forces, N.
         stress: (3, 3, M) second Piola-Kirchhoff stress of the displacements, MPa, M = E Q.
-        P, A, F: first Piola-Kirchhoff stress, its moduli and the elastic deformation gradient.
+        A: (3, 3, 3, 3, M) moduli dP/dF.
+        F: (3, 3, M) elastic deformation gradient.
     """
 
-    stiffness: Array
+    entries: Array
     residual: Array
     stress: Array
-    P: Array
     A: Array
     F: Array
 
@@ -97,7 +99,6 @@ def deformation(points: Points, u: Array, s: Array) -> tuple[Array, Array, Array
     return _last(F), gradients, points.volumes * grown.prod(axis=-1)
 
 
-@jax.jit
 def respond(
     law: Law, points: Points, u: Array, s: Array | float, carried: Array | None
 ) -> Response:
@@ -120,21 +121,17 @@ def respond(
     moduli = A
     if carried is not None:
         moduli += eye[:, None, :, None, None] * (carried - S)[None, :, None, :]
-    # Symmetry leaves six of the nine pairs (k, l) of displacement components to be computed.
     flat = gradients.transpose(0, 1, 3, 2).reshape(e, q * 3, 20)
-    K: list[list[Array]] = [[flat] * 3 for _ in range(3)]
-    for k in range(3):
-        for l in range(k, 3):  # noqa: E741
-            right = jnp.einsum(
-                "ijeq,eqnj->eqin", moduli[k, :, l].reshape(3, 3, e, q), weighted
-            ).reshape(e, q * 3, 20)
-            K[k][l] = jnp.einsum("exa,exb->eab", flat, right)
-            K[l][k] = K[k][l].swapaxes(1, 2)
-    stiffness = jnp.stack([jnp.stack(row, axis=-1) for row in K], axis=2)  # (E, a, k, b, l)
-    return Response(stiffness.reshape(e, 60, 60), residual.sum(axis=1), S, P, A, F)
+
+    def block(k: int, l: int) -> Array:  # noqa: E741
+        pair = moduli[k, :, l].reshape(3, 3, e, q)
+        right = jnp.einsum("ijeq,eqnj->eqin", pair, weighted).reshape(e, q * 3, 20)
+        return jnp.einsum("exa,exb->eab", flat, right)
+
+    entries = jnp.stack([block(k, l) for k, l in PAIRS], axis=1)
+    return Response(entries, residual.sum(axis=1), S, A, F)
 
 
-@jax.jit
 def carry(points: Points, response: Response, du: Array, s: Array) -> Array:
     """Return the stress S + dS/dE : (F^T dF) that the next iteration carries, (3, 3, M) MPa.
 
