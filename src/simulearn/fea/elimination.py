@@ -95,7 +95,9 @@ def expand(s: Structure, levels: list[Level], joints: Array, nodes: int) -> Arra
     return u.at[s.insides].set(x.reshape(*s.insides.shape, 3))
 
 
-def solve_joints(s: Skeleton, blocks: np.ndarray, condensed: Condensed, load: np.ndarray) -> np.ndarray:
+def solve_joints(
+    s: Skeleton, blocks: np.ndarray, condensed: Condensed, load: np.ndarray
+) -> np.ndarray:
     """Return the displacements (J, n, 3) of the joints' nodes; the held ones stay.
 
     Args:

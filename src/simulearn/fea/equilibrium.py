@@ -35,7 +35,7 @@ class Control:
         mixed: carry the stress as an own unknown; without, it is plain Newton.
     """
 
-    tolerance: float = 1e-3
+    tolerance: float = 1e-4
     iterations: int = 15
     halvings: int = 6
     mixed: bool = True
@@ -134,8 +134,14 @@ class Equilibrium:
         least = 100.0  # mm
         for iteration in range(self.control.iterations):
             response, condensed, out = _reduce(
-                self.law, self.points, self.structure, u, s, carried if self.control.mixed else None,
-                g * self.load, self.solid.bricks,
+                self.law,
+                self.points,
+                self.structure,
+                u,
+                s,
+                carried if self.control.mixed else None,
+                g * self.load,
+                self.solid.bricks,
             )
             self.iterations += 1
             try:
@@ -148,7 +154,13 @@ class Equilibrium:
             except np.linalg.LinAlgError as error:
                 raise NotConvergedError("the stiffness is singular") from error
             u, carried, change = _update(
-                self.points, self.structure, response, condensed.levels, joints, u, s,
+                self.points,
+                self.structure,
+                response,
+                condensed.levels,
+                joints,
+                u,
+                s,
                 self.solid.bricks,
             )
             if change < self.control.tolerance:

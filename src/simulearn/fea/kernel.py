@@ -65,26 +65,41 @@ class Response(NamedTuple):
 
 def points_of(solid: Solid) -> Points:
     """Return the material points of a solid."""
-    vertices = np.unique(solid.bricks[:, :8])
-    number = np.empty(len(solid.nodes), dtype=np.int64)
-    number[vertices] = np.arange(len(vertices))
-    mesh = MeshHex(solid.nodes[vertices].T, number[solid.bricks[:, :8]].T)
-    basis = Basis(mesh, ElementHexS2(), quadrature=(solid.points, solid.weights))
-    gradients = np.stack([phi[0].grad for phi in basis.basis])  # (20, 3, E, Q)
-    values = np.stack([np.broadcast_to(phi[0].value, basis.dx.shape) for phi in basis.basis])
+    in_joint = solid.parts[:, 0] < 0
+    bricks, points = len(solid.bricks), len(solid.weights)
+    gradients = np.empty((bricks, points, 20, 3))
+    volumes, load = np.empty((bricks, points)), np.empty((bricks, 20))
+    for chosen, rule in (
+        (~in_joint, (solid.points, solid.weights)),
+        (in_joint, (solid.joint_points, solid.joint_weights)),
+    ):
+        if chosen.any():
+            basis = _basis(solid.nodes, solid.bricks[chosen], rule)
+            gradients[chosen] = np.stack([n[0].grad for n in basis.basis]).transpose(2, 3, 0, 1)
+            volumes[chosen] = basis.dx
+            load[chosen] = np.stack([(n[0].value * basis.dx).sum(axis=1) for n in basis.basis], 1)
     c, s = np.cos(solid.angle), np.sin(solid.angle)
     zero, one = np.zeros_like(c), np.ones_like(c)
     frame = np.stack([[c, s, zero], [-s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
     return Points(
-        gradients=jnp.asarray(gradients.transpose(2, 3, 0, 1)),
-        volumes=jnp.asarray(basis.dx),
+        gradients=jnp.asarray(gradients),
+        volumes=jnp.asarray(volumes),
         frame=jnp.asarray(frame),
         growth=jnp.asarray(solid.growth),
-        load=jnp.asarray(np.einsum("neq,eq->en", values, basis.dx)),
+        load=jnp.asarray(load),
     )
 
 
-def deformation(points: Points, u: Array, s: Array) -> tuple[Array, Array, Array]:
+def _basis(nodes: np.ndarray, bricks: np.ndarray, rule: tuple[np.ndarray, np.ndarray]) -> Basis:
+    """Return the shape functions of bricks at their integration points."""
+    vertices, corners = np.unique(bricks[:, :8], return_inverse=True)
+    mesh = MeshHex(
+        np.ascontiguousarray(nodes[vertices].T), np.ascontiguousarray(corners.reshape(-1, 8).T)
+    )
+    return Basis(mesh, ElementHexS2(), quadrature=rule)
+
+
+def deformation(points: Points, u: Array, s: Array | float) -> tuple[Array, Array, Array]:
     """Return F_e (3, 3, M), grown gradients (E, Q, 20, 3) and grown volumes (E, Q).
 
     Args:

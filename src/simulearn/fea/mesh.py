@@ -13,6 +13,7 @@ from skfem import Basis, ElementHexS2, MeshHex
 
 from simulearn.errors import InputError
 from simulearn.fea.printing import printing
+from simulearn.fea.sampling import sampling
 from simulearn.fea.solid import Solid
 from simulearn.grid import Grid, Outline, outline
 from simulearn.material import Material, Section
@@ -47,6 +48,8 @@ class Layout:
             return np.array([0.0, 1.0])
         return np.unique(np.r_[0, np.linspace(shell, 1 - shell, self.core + 1), 1])
 
+
+GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])  # two points on [0, 1]
 
 COARSE = Layout()  # 210 bricks in a 2x2 grid
 THREE_ACROSS = Layout(core=1)  # shell, core, shell: one growth per brick, as CalculiX needs it
@@ -89,7 +92,10 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     x, y = across[:, None, None], across[None, :, None]
     c = shape.joints[:, :, None, None, :]  # corner k, then places over the block
     places[joints, :2] = (
-        (1 - x) * (1 - y) * c[:, 0] + x * (1 - y) * c[:, 1] + x * y * c[:, 2] + (1 - x) * y * c[:, 3]
+        (1 - x) * (1 - y) * c[:, 0]
+        + x * (1 - y) * c[:, 1]
+        + x * y * c[:, 2]
+        + (1 - x) * y * c[:, 3]
     )[:, :, :, None, :]
     t = along[:, 1:-1, None, None]
     e = shape.beams[:, :, :, None, None, :]  # [start, end], [right, left]
@@ -105,14 +111,22 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     where[: len(in_joints[1]), 0] = -1
 
     points, weights = _rule(section, layout)
+    gauss = _product(GAUSS, GAUSS, GAUSS)[0]
+    # So that all bricks have equally many, a joint's eight points are counted more than once.
+    repeat = len(weights) // gauss.shape[1]
     basis = Basis(
-        MeshHex(places.T, np.concatenate([in_joints[0], in_beams[0]]).T),
+        MeshHex(
+            np.ascontiguousarray(places.T),
+            np.ascontiguousarray(np.concatenate([in_joints[0], in_beams[0]]).T),
+        ),
         ElementHexS2(),
         quadrature=(points, weights),
     )
     bricks = np.asarray(basis.element_dofs.T, dtype=np.int64)
     if not (np.asarray(basis.dx) > 0).all():
-        raise InputError("the outlines of the grid fold over: its joints are too close or too acute")
+        raise InputError(
+            "the outlines of the grid fold over: its joints are too close or too acute"
+        )
     beam, slab, strip, layer = where.T
     held = (beam == -1) & (slab == grid.fixed) & (layer < layout.layers)
     centre = (along[:, 1:] + along[:, :-1]) / 2  # of slabs
@@ -128,6 +142,15 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     # Scikit-fem numbers the vertices first, so that a vertex is its own node.
     corner = joints[:, [0, -1, -1, 0], [0, 0, -1, -1]]  # (J, 4, up)
     section_ = beams[:, [0, layout.slabs // 2, -1]][:, :, [0, -1]]  # (B, 3, [right, left], up)
+    axis = shape.beams.mean(axis=2)  # of the beams, (B, [start, end], 2)
+    samples, shares = sampling(
+        along,
+        np.linalg.norm(axis[:, 1] - axis[:, 0], axis=1),
+        across,
+        layout.layers,
+        points,
+        section,
+    )
     return Solid(
         nodes=np.ascontiguousarray(basis.doflocs.T),
         bricks=bricks,
@@ -135,16 +158,22 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
         slabs=layout.slabs,
         points=points,
         weights=weights,
+        joint_points=np.tile(gauss, repeat),
+        joint_weights=np.full(len(weights), 1 / len(weights)),
         angle=angle,
         growth=growth,
         stress=stress,
         fixed=np.unique(bricks[held]),
         joints=corner[:, :, [0, -1]].swapaxes(1, 2).reshape(-1, 8),
         beams=section_[..., [0, -1]].swapaxes(2, 3).reshape(-1, 3, 4),
+        samples=samples,
+        shares=shares,
     )
 
 
-def _number(grid: Grid, shape: Outline, slabs: int, wide: int, high: int) -> tuple[Indices, Indices]:
+def _number(
+    grid: Grid, shape: Outline, slabs: int, wide: int, high: int
+) -> tuple[Indices, Indices]:
     """Number the vertices of joints (J, wide, wide, high) and beams (B, slabs + 1, wide, high).
 
     Beams begin and end with the vertices of the joint sides that they meet.
@@ -176,8 +205,7 @@ def _rule(section: Section, layout: Layout) -> tuple[Array, Array]:
     section has four across, one amid each shell and two in the core, set so that the rule is
     still exact to third degree.
     """
-    gauss = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])
-    across = gauss
+    across = GAUSS
     shell = section.shell / section.width
     if layout.core == 0 and shell:
         outer = (1 - shell) / 2
@@ -191,7 +219,11 @@ def _rule(section: Section, layout: Layout) -> tuple[Array, Array]:
             0.5 + np.array([-outer, -inner, inner, outer]),
             np.array([shell, 0.5 - shell, 0.5 - shell, shell]),
         )
-    axes = (gauss, across, gauss)
+    return _product(GAUSS, across, GAUSS)
+
+
+def _product(*axes: tuple[Array, Array]) -> tuple[Array, Array]:
+    """Return the points (3, Q) and weights (Q,) of the product of three rules."""
     points = np.stack(np.meshgrid(*(p for p, _ in axes), indexing="ij")).reshape(3, -1)
     weights = np.prod(np.meshgrid(*(w for _, w in axes), indexing="ij"), axis=0).reshape(-1)
     return points, weights
