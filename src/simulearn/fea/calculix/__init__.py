@@ -1,7 +1,6 @@
 """CalculiX as an engine and a judge: the same solid in another program."""
 
-from simulearn.fea.calculix.brick import POINTS
-from simulearn.fea.calculix.deck import write_deck
 from simulearn.fea.calculix.run import CalculixFrames, calculix
+from simulearn.fea.calculix.trial import simulate_grid
 
-__all__ = ["POINTS", "CalculixFrames", "calculix", "write_deck"]
+__all__ = ["CalculixFrames", "calculix", "simulate_grid"]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.fea.solid import Solid
-from simulearn.material import ElasticData, MarlowData
+from simulearn.material import ElasticData
 
 Array = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ def initial_strain(angle: Array, growth: Array, release: float) -> Array:
     )
 
 
-def orthotropic(law: ElasticData | MarlowData, growth: Array, release: float) -> Array:
+def orthotropic(law: ElasticData, growth: Array, release: float) -> Array:
     """Return the nine constants of the grown St Venant-Kirchhoff law in the printing frame, MPa.
 
     Args:

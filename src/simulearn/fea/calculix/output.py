@@ -69,9 +69,9 @@ def read_sta(path: Path) -> list[tuple[int, int, int]]:
     return [(int(r[0]), int(r[1]), int(r[3])) for r in rows if len(r) == 7 and r[1].isdigit()]
 
 
-def last_error(log: Path) -> str:
+def last_error(log: str) -> str:
     """Return CalculiX's own last error message as one line, or an empty string."""
-    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = log.splitlines()
     starts = [k for k, line in enumerate(lines) if "*ERROR" in line]
     if not starts:
         return ""
