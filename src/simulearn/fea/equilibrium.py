@@ -7,6 +7,7 @@ beyond which the computation fails and says where: there is never a wrong answer
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -15,10 +16,10 @@ from numpy.typing import NDArray
 
 from simulearn.errors import ComputationError
 from simulearn.fea import elimination
-from simulearn.fea.kernel import Points, carry, points_of, respond
+from simulearn.fea.kernel import Points, Response, carry, points_of, respond
 from simulearn.fea.laws import Law
 from simulearn.fea.solid import Solid
-from simulearn.fea.structure import structure_of
+from simulearn.fea.structure import Structure, structure_of
 
 Array = NDArray[np.float64]
 
@@ -43,12 +44,21 @@ class Control:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A solid in equilibrium: released fraction, gravity, displacements (N, 3) mm, carried stress."""
+    """A solid in equilibrium.
+
+    Attributes:
+        released: fraction of the residual stress that is released.
+        gravity: multiple of gravity.
+        u: (N, 3) mm, displacements of the nodes.
+        carried: (3, 3, M) MPa, second Piola-Kirchhoff stress at the points, in the grown state.
+        stable: whether the beams between the joints are stable.
+    """
 
     released: float
     gravity: float
     u: Array
     carried: Array
+    stable: bool = True
 
 
 class NotConvergedError(Exception):
@@ -130,56 +140,84 @@ class Equilibrium:
 
     def _increment(self, path: list[State], s: float, g: float) -> State:
         u, carried = _extrapolate(path, s, g)
-        nodes = self.structure.blocks
         least = 100.0  # mm
-        for iteration in range(self.control.iterations):
+        for _ in range(self.control.iterations):
+            stress = carried if self.control.mixed else None
+            u, carried, change, stable = self._iterate(u, s, stress, g * self.load)
+            self.iterations += 1
+            if change < self.control.tolerance:
+                return State(s, g, np.asarray(u), np.asarray(carried), stable)
+            if not change < 4 * least:
+                break
+            least = min(least, change)
+        raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")
+
+    def _iterate(
+        self, u: Array, s: float, carried: Array | None, load: Array
+    ) -> tuple[Array, Array, float, bool]:
+        """Return displacements, stress, largest change (mm) and whether the tangent is definite."""
+        for definite in (True, False):
             response, condensed, out = _reduce(
                 self.law,
                 self.points,
                 self.structure,
                 u,
                 s,
-                carried if self.control.mixed else None,
-                g * self.load,
+                carried,
+                load,
                 self.solid.bricks,
+                definite,
             )
-            self.iterations += 1
-            try:
-                joints = elimination.solve_joints(
-                    self.skeleton,
-                    np.array(condensed.blocks),
-                    condensed,
-                    np.asarray(out)[nodes].reshape(len(nodes), -1),
-                )
-            except np.linalg.LinAlgError as error:
-                raise NotConvergedError("the stiffness is singular") from error
-            u, carried, change = _update(
-                self.points,
-                self.structure,
-                response,
-                condensed.levels,
-                joints,
-                u,
-                s,
-                self.solid.bricks,
-            )
-            if change < self.control.tolerance:
-                return State(s, g, np.asarray(u), np.asarray(carried))
-            if not change < 4 * least:
+            beams = np.asarray(condensed.beams)
+            if not definite or np.isfinite(beams).all():
                 break
-            least = min(least, change)
-        raise NotConvergedError(f"still moving by {change:.2g} mm after {iteration + 1} iterations")
+        nodes = self.structure.blocks
+        try:
+            joints = elimination.solve_joints(
+                self.skeleton,
+                np.array(condensed.blocks),
+                beams,
+                np.asarray(condensed.rest),
+                np.asarray(out)[nodes].reshape(len(nodes), -1),
+            )
+        except np.linalg.LinAlgError as error:
+            raise NotConvergedError("the stiffness is singular") from error
+        u, carried, change = _update(
+            self.points, self.structure, response, condensed.levels, joints, u, s, self.solid.bricks
+        )
+        return u, carried, float(change), definite
 
 
-@jax.jit
-def _reduce(law, points, structure, u, s, carried, load, bricks):
+@partial(jax.jit, static_argnames="definite")
+def _reduce(
+    law: Law,
+    points: Points,
+    structure: Structure,
+    u: jax.Array,
+    s: float,
+    carried: jax.Array | None,
+    load: jax.Array,
+    bricks: jax.Array,
+    definite: bool,
+) -> tuple[Response, elimination.Condensed, jax.Array]:
+    """Return the bricks' response, the system on the joints, and the forces out of balance."""
     response = respond(law, points, u[bricks], s, carried)
     out = load.at[bricks].add(-response.residual)
-    return response, elimination.condense(structure, response.entries, out), out
+    return response, elimination.condense(structure, response.entries, out, definite), out
 
 
 @jax.jit
-def _update(points, structure, response, levels, joints, u, s, bricks):
+def _update(
+    points: Points,
+    structure: Structure,
+    response: Response,
+    levels: list[elimination.Level],
+    joints: jax.Array,
+    u: jax.Array,
+    s: float,
+    bricks: jax.Array,
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Return displacements and carried stress after an iteration, and its largest change."""
     du = elimination.expand(structure, levels, joints, len(u))
     change = jnp.where(jnp.isfinite(du).all(), abs(du).max(), jnp.inf)
     return u + du, carry(points, response, du[bricks], s), change

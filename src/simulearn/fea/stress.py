@@ -10,46 +10,53 @@ import numpy as np
 from jax import Array
 from numpy.typing import NDArray
 
-from simulearn.fea.equilibrium import Equilibrium, State
 from simulearn.fea.kernel import Points, deformation
 from simulearn.fea.laws import Law
+from simulearn.fea.solid import Solid
 
 COMPONENTS = (0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)  # 11 22 33 12 13 23
 
 
 def sampled_stress(
-    problem: Equilibrium, state: State, softening: float = 1.0
+    solid: Solid,
+    points: Points,
+    u: NDArray[np.float64],
+    released: float,
+    cauchy: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return the stress (B, 4, 4, 6) MPa at the sampling points of a solid in equilibrium.
+    """Return the stress (B, 4, 4, 6) MPa at the sampling points.
 
     Args:
-        problem: whose solid it is.
-        state: its equilibrium.
-        softening: by which creep has divided the elastic moduli.
+        solid: the solid.
+        points: its material points.
+        u: (N, 3) mm, displacements of the nodes.
+        released: fraction of the residual stress that is released.
+        cauchy: (M, 3, 3) MPa, elastic stress at the points.
     """
-    solid = problem.solid
-    first = solid.growth.shape[1] * problem.structure.joint_bricks
-    cauchy, F = _fields(problem.law, problem.points, state.u[solid.bricks], state.released)
-    # The points of beams follow those of joints.
-    at = first + solid.samples
-    elastic = np.einsum("bsci,bscikl->bsckl", solid.shares, np.asarray(cauchy)[at]) / softening
-    F = np.einsum("bsci,bscikl->bsckl", solid.shares, np.asarray(F)[at])
-    left, _, right = np.linalg.svd(F)
-    frame = np.asarray(problem.points.frame)[at[..., 0] // solid.growth.shape[1]]
+    many = len(solid.weights)
+    # The bricks of beams follow those of joints.
+    at = solid.samples + many * int((solid.parts[:, 0] < 0).sum())
+    elastic = np.einsum("bsci,bscikl->bsckl", solid.shares, cauchy[at])
+    F = np.asarray(_gradient(points, u[solid.bricks], released))[at]
+    left, _, right = np.linalg.svd(np.einsum("bsci,bscikl->bsckl", solid.shares, F))
+    frame = np.asarray(points.frame)[at[..., 0] // many]
     axes = np.einsum("bsckm,bscmi,bscai->bscak", left, right, frame)  # turned printing axes
     printed = solid.stress.reshape(-1, 3)[at[..., 0]]
-    locked = (1 - state.released) * np.einsum("bsca,bscai,bscaj->bscij", printed, axes, axes)
-    return (elastic + locked)[..., *COMPONENTS]
+    locked = (1 - released) * np.einsum("bsca,bscai,bscaj->bscij", printed, axes, axes)
+    return np.asarray((elastic + locked)[..., *COMPONENTS])
 
 
 @jax.jit
-def _fields(law: Law, points: Points, u: Array, s: float) -> tuple[Array, Array]:
-    """Return Cauchy stress and deformation gradient at all points, (M, 3, 3)."""
+def cauchy_stress(law: Law, points: Points, u: Array, s: Array | float) -> Array:
+    """Return the elastic Cauchy stress (M, 3, 3) MPa at all points; see `kernel.respond`."""
     F, _, _ = deformation(points, u, s)
     P, _ = law.response(F)
-    J = jnp.linalg.det(F.transpose(2, 0, 1))
-    cauchy = jnp.einsum("kim,lim->mkl", P, F) / J[:, None, None]
-    grown = jnp.einsum(
-        "eai,eqa,eaj->eqij", points.frame, 1 + s * points.growth, points.frame
-    ).reshape(-1, 3, 3)
-    return cauchy, jnp.einsum("kim,mij->mkj", F, grown)
+    return jnp.einsum("kim,lim->mkl", P, F) / jnp.linalg.det(F.transpose(2, 0, 1))[:, None, None]
+
+
+@jax.jit
+def _gradient(points: Points, u: Array, s: Array | float) -> Array:
+    """Return the whole deformation gradient F_e F_g (M, 3, 3) at all points."""
+    F, _, _ = deformation(points, u, s)
+    grown = jnp.einsum("eai,eqa,eaj->eqij", points.frame, 1 + s * points.growth, points.frame)
+    return jnp.einsum("kim,mij->mkj", F, grown.reshape(-1, 3, 3))

@@ -130,9 +130,9 @@ def _sources(places: Indices) -> Indices:
     by_target = np.argsort(target, kind="stable")
     target, source = target[by_target], source[by_target]
     rank = np.arange(len(target)) - np.searchsorted(target, target)
-    table = np.full((rank.max() + 1, rows**2), size * len(places))
+    table = np.full((int(rank.max()) + 1, rows**2), size * len(places))
     table[rank, target] = source
-    return table.reshape(-1, rows, rows)
+    return table.reshape(-1, rows, rows).astype(np.int32)
 
 
 def _minimum_degree(ends: list[tuple[int, int]], joints: int) -> list[int]:

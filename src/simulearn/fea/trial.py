@@ -7,7 +7,7 @@ the same as multiplying gravity by 1 + phi (a quasi-elastic solution; see `docs/
 """
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ from simulearn.fea.equilibrium import Control, Equilibrium, State
 from simulearn.fea.laws import law_of
 from simulearn.fea.mesh import COARSE, Layout, mesh
 from simulearn.fea.solid import Solid
-from simulearn.fea.stress import sampled_stress
+from simulearn.fea.stress import cauchy_stress, sampled_stress
 from simulearn.grid import Grid
 from simulearn.material import Material
 
@@ -52,6 +52,28 @@ class Trial:
     record: dict[str, Any]
     solid: Solid
     displacements: Array
+
+    @classmethod
+    def of(
+        cls,
+        solid: Solid,
+        displacements: Sequence[Array],
+        stress: Sequence[Array],
+        begun: float,
+        record: dict[str, Any],
+    ) -> "Trial":
+        """Return the trial of a solid's frames, begun at a time of `time.perf_counter`."""
+        u = np.stack(displacements)
+        at = solid.nodes + u
+        return cls(
+            joints=at[:, solid.joints],
+            beams=at[:, solid.beams],
+            stress=np.stack(stress),
+            seconds=time.perf_counter() - begun,
+            record=record,
+            solid=solid,
+            displacements=u,
+        )
 
 
 def simulate_grid(
@@ -102,25 +124,24 @@ def simulate_grid(
     except ComputationError as error:
         raise ComputationError(f"frame {len(frames)} of {FRAMES - 1}: {error}") from error
 
-    solid = problem.solid
-    u = np.stack([state.u for state in frames])
-    at = solid.nodes + u
-    return Trial(
-        joints=at[:, solid.joints],
-        beams=at[:, solid.beams],
-        stress=np.stack(
-            [
-                sampled_stress(problem, state, softening=creep if k == FRAMES - 1 else 1.0)
-                for k, state in enumerate(frames)
-            ]
-        ),
-        seconds=time.perf_counter() - begun,
-        record={
-            "iterations": spent,
-            "halved": problem.halved,
-            "bricks": len(solid.bricks),
-            "unknowns": 3 * (len(solid.nodes) - len(solid.fixed)),
-        },
-        solid=solid,
-        displacements=u,
-    )
+    solid, points = problem.solid, problem.points
+    softening = [1.0] * (FRAMES - 1) + [creep]
+    stress = [
+        sampled_stress(
+            solid,
+            points,
+            state.u,
+            state.released,
+            np.asarray(cauchy_stress(problem.law, points, state.u[solid.bricks], state.released))
+            / soft,
+        )
+        for state, soft in zip(frames, softening, strict=True)
+    ]
+    record = {
+        "law": material.law.kind,
+        "iterations": spent,
+        "halved": problem.halved,
+        "bricks": len(solid.bricks),
+        "unknowns": 3 * (len(solid.nodes) - len(solid.fixed)),
+    }
+    return Trial.of(solid, [state.u for state in frames], stress, begun, record)
