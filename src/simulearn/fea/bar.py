@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 def bar(length: float, ratio: float, material: Material) -> Grid:
     """Return a beam of net length `length` (mm) along +x, its first joint fixed."""
     span = length + material.section.width
-    return Grid([[0, 0], [span, 0]], [[0, 1]], [ratio], 0, material.name)
+    return Grid(np.array([[0.0, 0.0], [span, 0.0]]), [[0, 1]], [ratio], 0, material.name)
 
 
 def curvature(solid: Solid, displacements: Array, begin: float = 0.25, end: float = 0.75) -> float:

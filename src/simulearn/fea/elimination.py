@@ -14,6 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from jax.lax.linalg import triangular_solve
+from numpy.linalg import LinAlgError
+from scipy.linalg import cho_factor, cho_solve
 
 from simulearn.fea.structure import Skeleton, Structure
 
@@ -105,8 +107,8 @@ def expand(s: Structure, levels: list[Level], joints: Array, nodes: int) -> Arra
 
 def solve_joints(
     s: Skeleton, blocks: np.ndarray, beams: np.ndarray, rest: np.ndarray, load: np.ndarray
-) -> np.ndarray:
-    """Return the displacements (J, n, 3) of the joints' nodes; the held ones stay.
+) -> tuple[np.ndarray, bool]:
+    """Solve for the joints' nodes; the held ones stay.
 
     Args:
         s: the skeleton.
@@ -114,6 +116,9 @@ def solve_joints(
         beams: (B, 6 f, 6 f) stiffness of the beams on their end faces.
         rest: (B, 6 f) forces of the beams on their end faces.
         load: (J, 3 n) forces on the joints' nodes; overwritten.
+
+    Returns:
+        displacements (J, n, 3), and whether the system is positive definite.
 
     Raises:
         numpy.linalg.LinAlgError: the stiffness is singular.
@@ -139,6 +144,7 @@ def solve_joints(
     load[s.fixed, s.held] = 0
 
     done = []
+    definite = True
     left = set(s.order)
     for i in s.order:
         left.discard(i)
@@ -147,7 +153,11 @@ def solve_joints(
         touched = [np.flatnonzero(between[i, j].any(axis=0)) for j in near]
         wide = [between[i, j][:, t] for j, t in zip(near, touched, strict=True)]
         all_ = np.concatenate([*wide, load[i][:, None]], axis=1)
-        X = np.linalg.solve(blocks[i], all_)
+        try:
+            X = cho_solve(cho_factor(blocks[i], lower=True, check_finite=False), all_)
+        except LinAlgError:
+            definite = False
+            X = np.linalg.solve(blocks[i], all_)
         done.append((i, near, touched, X))
         change = all_[:, :-1].T @ X
         cuts = np.cumsum([0, *map(len, touched)])
@@ -164,7 +174,7 @@ def solve_joints(
     for i, near, touched, X in reversed(done):
         others = [u[j, t] for j, t in zip(near, touched, strict=True)]
         u[i] = X[:, -1] - X[:, :-1] @ np.concatenate([*others, []])
-    return u.reshape(len(blocks), -1, 3)
+    return u.reshape(len(blocks), -1, 3), definite
 
 
 def _rounds(slabs: int) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:

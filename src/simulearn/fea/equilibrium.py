@@ -13,6 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
 
 from simulearn.errors import ComputationError
 from simulearn.fea import elimination
@@ -22,6 +23,9 @@ from simulearn.fea.solid import Solid
 from simulearn.fea.structure import Structure, structure_of
 
 Array = NDArray[np.float64]
+
+# The matrices are small: several threads only wait for each other, the more so beside other work.
+BLAS = ThreadpoolController()
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,7 @@ class State:
         gravity: multiple of gravity.
         u: (N, 3) mm, displacements of the nodes.
         carried: (3, 3, M) MPa, second Piola-Kirchhoff stress at the points, in the grown state.
-        stable: whether the beams between the joints are stable.
+        stable: whether the stiffness is positive definite, so that it does not buckle.
     """
 
     released: float
@@ -113,9 +117,13 @@ class Equilibrium:
         Raises:
             ComputationError: no equilibrium was found, however small the increment.
         """
-        path = list(past)
-        # Without a past to extrapolate from, a short step finds the way.
-        step, done = (1.0 if len(path) > 1 or released == 0 else 0.25), 0.0
+        with BLAS.limit(limits=1, user_api="blas"):
+            return self._advance(list(past), released, gravity)[len(past) :]
+
+    def _advance(self, path: list[State], released: float, gravity: float) -> list[State]:
+        # Release without a past to extrapolate from begins with a short step.
+        blind = len(path) == 1 and released != path[-1].released
+        step, done = (0.25 if blind else 1.0), 0.0
         start = np.array([path[-1].released, path[-1].gravity])
         goal = np.array([released, gravity])
         reason = ""
@@ -136,7 +144,7 @@ class Equilibrium:
                         f"released under {path[-1].gravity:.2f} times gravity: {reason}, even "
                         f"with the increment halved {self.control.halvings} times"
                     ) from error
-        return path[len(past) :]
+        return path
 
     def _increment(self, path: list[State], s: float, g: float) -> State:
         u, carried = _extrapolate(path, s, g)
@@ -173,19 +181,19 @@ class Equilibrium:
                 break
         nodes = self.structure.blocks
         try:
-            joints = elimination.solve_joints(
+            joints, stable = elimination.solve_joints(
                 self.skeleton,
                 np.array(condensed.blocks),
                 beams,
                 np.asarray(condensed.rest),
                 np.asarray(out)[nodes].reshape(len(nodes), -1),
             )
-        except np.linalg.LinAlgError as error:
+        except (np.linalg.LinAlgError, ValueError) as error:
             raise NotConvergedError("the stiffness is singular") from error
         u, carried, change = _update(
             self.points, self.structure, response, condensed.levels, joints, u, s, self.solid.bricks
         )
-        return u, carried, float(change), definite
+        return u, carried, float(change), definite and stable
 
 
 @partial(jax.jit, static_argnames="definite")
@@ -214,7 +222,7 @@ def _update(
     levels: list[elimination.Level],
     joints: jax.Array,
     u: jax.Array,
-    s: float,
+    s: jax.Array | float,
     bricks: jax.Array,
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
     """Return displacements and carried stress after an iteration, and its largest change."""

@@ -12,18 +12,16 @@ solution is the same and slender, turning beams need less than half of Newton's 
 
 from typing import NamedTuple
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from skfem import Basis, ElementHexS2, MeshHex
 
+import simulearn.compiled  # noqa: F401  double precision, before any array is made
 from simulearn.fea.laws import Law
 from simulearn.fea.laws.law import inverse_transpose
 from simulearn.fea.solid import Solid
 from simulearn.fea.structure import PAIRS
-
-jax.config.update("jax_enable_x64", True)
 
 
 class Points(NamedTuple):
@@ -143,11 +141,11 @@ def respond(
         right = jnp.einsum("ijeq,eqnj->eqin", pair, weighted).reshape(e, q * 3, 20)
         return jnp.einsum("exa,exb->eab", flat, right)
 
-    entries = jnp.stack([block(k, l) for k, l in PAIRS], axis=1)
+    entries = jnp.stack([block(*pair) for pair in PAIRS], axis=1)
     return Response(entries, residual.sum(axis=1), S, A, F)
 
 
-def carry(points: Points, response: Response, du: Array, s: Array) -> Array:
+def carry(points: Points, response: Response, du: Array, s: Array | float) -> Array:
     """Return the stress S + dS/dE : (F^T dF) that the next iteration carries, (3, 3, M) MPa.
 
     Args:

@@ -184,9 +184,10 @@ def _number(
         [joints[:, :, 0], joints[:, -1, :], joints[:, ::-1, -1], joints[:, 0, ::-1]], axis=1
     )
     start, end = sides[grid.beams.T, shape.sides.T]
-    inner = joints.size + np.arange(len(grid.beams) * (slabs - 1) * wide * high)
-    inner = inner.reshape(-1, slabs - 1, wide, high)
-    return joints, np.concatenate([start[:, None], inner, end[:, None, ::-1]], axis=1)
+    inner = np.arange(len(grid.beams) * (slabs - 1) * wide * high).reshape(
+        -1, slabs - 1, wide, high
+    )
+    return joints, np.concatenate([start[:, None], joints.size + inner, end[:, None, ::-1]], axis=1)
 
 
 def _cells(vertices: Indices) -> tuple[Indices, Indices]:

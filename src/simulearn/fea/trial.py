@@ -40,7 +40,7 @@ class Trial:
         beams: (12, B, 3, 4, 3) corners of the beams' sections at start, middle and end.
         stress: (12, B, 4, 4, 6) components 11 22 33 12 13 23 in global axes.
         seconds: time it took.
-        record: iterations, halved increments and bricks.
+        record: law, iterations a frame, halved increments, whether all frames are stable, size.
         solid: the solid.
         displacements: (12, N, 3) of its nodes.
     """
@@ -141,6 +141,7 @@ def simulate_grid(
         "law": material.law.kind,
         "iterations": spent,
         "halved": problem.halved,
+        "stable": all(state.stable for state in frames),
         "bricks": len(solid.bricks),
         "unknowns": 3 * (len(solid.nodes) - len(solid.fixed)),
     }

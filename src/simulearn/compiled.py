@@ -1,0 +1,28 @@
+"""How JAX is set up: double precision, and compiled kernels kept between runs.
+
+Import this before using JAX. Kernels are kept in the user's cache folder, so that only the first
+simulation on a machine waits for the compiler; JAX_COMPILATION_CACHE_DIR names another folder.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+import jax
+
+
+def cache_folder() -> Path:
+    """Return the folder for what can be computed again, by the custom of the platform."""
+    if sys.platform == "win32":
+        base = os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "simulearn"
+
+
+jax.config.update("jax_enable_x64", True)
+if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
+    jax.config.update("jax_compilation_cache_dir", str(cache_folder() / "compiled"))
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
