@@ -1,0 +1,53 @@
+"""Block elimination solves the same system as a sparse solver."""
+
+import jax.numpy as jnp
+import ladder
+import numpy as np
+import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import spsolve
+
+from simulearn.fea import COARSE, THREE_ACROSS, Layout, mesh
+from simulearn.fea.elimination import condense, expand, solve_joints
+from simulearn.fea.kernel import points_of, respond
+from simulearn.fea.laws import law_of
+from simulearn.fea.structure import structure_of
+from simulearn.grid import Grid, drop_beams, make
+
+GRIDS = {
+    "2x2": make("saddle"),
+    "1x2": make("dome", (1, 2)),
+    "two beams missing": drop_beams(make("twist"), [0, 10]),
+}
+
+
+@pytest.mark.parametrize("definite", [True, False], ids=["Cholesky", "LU"])
+@pytest.mark.parametrize("layout", [COARSE, Layout(slabs=6), THREE_ACROSS], ids=str)
+@pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
+def test_against_a_sparse_solver(grid: Grid, layout: Layout, definite: bool) -> None:
+    if layout == THREE_ACROSS and len(grid.beams) > 8:
+        pytest.skip("too large for a quick test")
+    solid = mesh(grid, ladder.PLA, layout)
+    points, (structure, skeleton) = points_of(solid), structure_of(solid)
+    u = np.zeros((len(solid.bricks), 20, 3))
+    entries = respond(law_of(ladder.PLA.law), points, u, 0.1, None).entries
+    load = np.random.default_rng(0).normal(size=solid.nodes.shape)
+
+    c = condense(structure, entries, jnp.asarray(load), definite)
+    joints, stable = solve_joints(
+        skeleton,
+        np.array(c.blocks),
+        np.asarray(c.beams),
+        np.asarray(c.rest),
+        load[structure.blocks].reshape(len(structure.blocks), -1),
+    )
+    found = np.asarray(expand(structure, c.levels, joints, len(load)))
+
+    dofs = (3 * solid.bricks[:, :, None] + np.arange(3)).reshape(-1, 60)
+    rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+    K = coo_matrix((ladder.full(np.asarray(entries)).ravel(), (rows.ravel(), columns.ravel())))
+    free = np.setdiff1d(np.arange(load.size), (3 * solid.fixed[:, None] + np.arange(3)).ravel())
+    exact = np.zeros(load.size)
+    exact[free] = spsolve(K.tocsc()[free][:, free], load.ravel()[free])
+    np.testing.assert_allclose(found.ravel(), exact, atol=1e-8 * abs(exact).max())
+    assert stable

@@ -1,0 +1,86 @@
+"""Material systems are data: another file is another material, and a wrong one is explained."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from simulearn.errors import InputError
+from simulearn.fea import simulate_grid
+from simulearn.grid import Grid, make
+from simulearn.material import load_material, names
+from simulearn.material.material import HERE
+
+PLA = (HERE / "pla-hot-water.toml").read_text(encoding="utf-8")
+
+# A made-up polymer with thinner, wider beams, a linear law and no creep.
+RUBBER = (
+    PLA.replace('name = "pla-hot-water"', 'name = "rubber-bath"')
+    .replace("width = 7.2", "width = 9.0")
+    .replace("thickness = 4.0", "thickness = 3.0")
+    .replace('kind = "marlow"', 'kind = "neo-hookean"')
+    .replace("amplitude = 0.129", "amplitude = 0.0")
+)
+RUBBER = RUBBER[: RUBBER.index("# nominal strain")] + RUBBER[RUBBER.index("[shrinkage]") :]
+
+
+def test_pla_comes_with_simulearn() -> None:
+    assert "pla-hot-water" in names()
+    pla = load_material("pla-hot-water")
+    assert pla.section.width == 7.2
+    assert pla.shrinkage.passive / pla.shrinkage.active == pytest.approx(0.118 / 0.158)
+    assert pla.gravity.body_force == pytest.approx(2.73e-6, rel=1e-2)
+
+
+def test_assumptions_are_marked_in_the_file() -> None:
+    for key in ("modulus", "shell = 0.09", "[creep]"):
+        line = next(line for line in PLA.splitlines() if line.startswith(key))
+        assert "assumed" in line
+
+
+def test_another_material_is_another_file(tmp_path: Path) -> None:
+    path = tmp_path / "rubber-bath.toml"
+    path.write_text(RUBBER, encoding="utf-8")
+    rubber = load_material(path)
+    flat = make("flat", (1, 1))
+    grid = Grid(flat.joints, flat.beams, [1, 0, 0, -1], 0, str(path))
+    trial = simulate_grid(grid, rubber)
+    assert np.ptp(trial.joints[0, :, :, 2]) == pytest.approx(3.0)
+    width = np.linalg.norm(trial.beams[0, :, 1, 1] - trial.beams[0, :, 1, 0], axis=-1)
+    np.testing.assert_allclose(width, 9.0)
+    assert trial.record["law"] == "neo-hookean"
+    np.testing.assert_allclose(trial.joints[11], trial.joints[10], atol=1e-6)  # no creep
+    assert np.linalg.norm(trial.joints[10] - trial.joints[0], axis=-1).max() > 5
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("width = 7.2", "width = -1", "section.width"),
+        ("width = 7.2", "width = nan", "section.width"),
+        ("shell = 0.9 ", "shell = 4.0 ", "no core"),
+        ("poisson = 0.406", "poisson = 0.6", "poisson"),
+        ("[0.001059, 0.003429]", "[0.5, 0.003429]", r"table\[1\]"),
+        ('kind = "marlow"', 'kind = "magic"', "magic"),
+        ("hold = 600.0", "hold = 600.0\nhalf = 1", "creep.half"),
+        ("[section]", "[section", "not valid TOML"),
+    ],
+)
+def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, message: str) -> None:
+    assert old in PLA
+    path = tmp_path / "wrong.toml"
+    path.write_text(PLA.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(InputError, match=message) as caught:
+        load_material(path)
+    assert str(path) in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_unknown_material_names_the_known_ones() -> None:
+    with pytest.raises(InputError, match=r'"pla" is not known; known are .*pla-hot-water'):
+        load_material("pla")
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such file"):
+        load_material(tmp_path / "none.toml")
