@@ -1,13 +1,17 @@
 """The Result of simulating a grid, the same for every engine."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.fea import Solid
 from simulearn.grid import Grid
+
+if TYPE_CHECKING:  # so that reading a result does not load a solver
+    from simulearn.fea import Solid
 
 FRAMES = 12  # flat, ten of residual-stress release, one after creep
 
@@ -27,7 +31,8 @@ class Result:
             corners; components 11 22 33 12 13 23 in global axes. None where an engine has none.
         seconds: time the simulation took.
         record: what the engine tells about its work, for example iterations per frame.
-        solid: the solid mesh with its displacements, where the engine has one.
+        solid: the solid mesh, where the engine has one.
+        displacements: (12, N, 3) of the solid's nodes from the flat grid.
     """
 
     grid: Grid
@@ -38,3 +43,9 @@ class Result:
     seconds: float
     record: dict[str, Any] = field(default_factory=dict)
     solid: Solid | None = None
+    displacements: NDArray[np.float64] | None = None
+
+    @property
+    def centres(self) -> NDArray[np.float64]:
+        """(12, J, 3) centres of the joints: the mean of their eight corners."""
+        return self.joints.mean(axis=2)

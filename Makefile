@@ -1,0 +1,40 @@
+# Every target sets up .venv by itself; nothing else needs to be installed by hand.
+PYTHON ?= python3
+BIN := .venv/bin
+
+# Small matrices gain nothing from threads; two test processes would only fight over the cores.
+ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
+	XLA_FLAGS="--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+
+.PHONY: demo test lint bench clean
+
+demo: .venv/ready
+	mkdir -p out
+	$(BIN)/simulearn simulate examples/saddle.json -o out/saddle.json -o out/saddle.png -o out/saddle.gif -o out/saddle.glb
+
+test: .venv/ready
+	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist worksteal
+
+lint: .venv/ready
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: .venv/ready
+	$(ONE_THREAD) $(BIN)/python benchmarks/verify.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/mesh_study.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/against_calculix.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/speed.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/designs.py
+
+clean:
+	rm -rf .venv out
+
+.venv/ready: pyproject.toml requirements.lock
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+		{ echo "SimuLearn needs Python 3.11 or newer; name one with: make PYTHON=python3.12"; exit 1; }
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	touch .venv/ready

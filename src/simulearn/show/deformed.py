@@ -1,0 +1,139 @@
+"""The grid in space: its shaded skin, hidden parts hidden, with the flat grid as a ghost.
+
+Quadrilaterals are drawn from the farthest to the nearest (the painter's way). They are short and
+of similar size, so that sorting them by their middles is right; faces that look away are left out.
+"""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from simulearn.show import style
+from simulearn.show.camera import Camera
+from simulearn.simulate import Result, Skin, skin, summary
+
+Array = NDArray[np.float64]
+EDGE_LIFT = 1.2  # mm by which an edge stands before its face, so that it is not painted over
+
+
+def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
+    """Draw the flat grid in light grey beneath all else."""
+    corners = surface.vertices[0][surface.quads]
+    top = _normals(corners)[:, 2] > 0.5
+    seen = camera.see(corners)[..., :2]
+    draw: Any = ax.add_collection
+    fill = {"facecolors": style.GHOST, "edgecolors": style.GHOST, "linewidths": 0.4}
+    draw(PolyCollection(list(seen[top]), zorder=1, **fill))
+    lines = _sharp_edges(seen, surface.sharp & top[:, None])
+    line = {"facecolors": "none", "edgecolors": style.GHOST_LINE, "linewidths": 0.5}
+    draw(PolyCollection(list(lines), closed=False, zorder=1.1, **line))
+
+
+def draw_skin(ax: Axes, vertices: Array, surface: Skin, fixed: int, camera: Camera) -> None:
+    """Draw a skin with its vertices (V, 3) where they are now."""
+    corners = vertices[surface.quads]
+    normals = _normals(corners)
+    front = normals @ camera.axes[2] > 0
+    corners, normals = corners[front], normals[front]
+    rgb = style.colours(surface.ratio[front], surface.joint[front], fixed)
+    rgb = rgb * camera.light(normals)[:, None]
+    seen = camera.see(corners)
+
+    sharp = surface.sharp[front]
+    lines = _sharp_edges(seen, sharp)
+    ink = np.array(to_rgb(style.INK))
+    shapes = [*seen[..., :2], *lines[..., :2]]
+    order = np.argsort(
+        np.concatenate([seen[..., 2].mean(axis=1), lines[..., 2].mean(axis=1) + EDGE_LIFT])
+    )
+    faces = np.concatenate([np.c_[rgb, np.ones(len(rgb))], np.zeros((len(lines), 4))])
+    # A face's own colour around it closes the hairlines between neighbours.
+    rims = np.concatenate([rgb, np.tile(ink, (len(lines), 1))])
+    widths = np.repeat([0.35, 0.55], [len(rgb), len(lines)])
+    draw: Any = ax.add_collection
+    draw(
+        PolyCollection(
+            [shapes[k] for k in order],
+            facecolors=faces[order],
+            edgecolors=rims[order],
+            linewidths=widths[order],
+            joinstyle="round",
+            capstyle="round",
+            zorder=2,
+        )
+    )
+
+
+def extent(surface: Skin, camera: Camera, frames: list[int]) -> tuple[Array, Array]:
+    """Return the lower left and upper right corner (2,) of what the frames cover, mm."""
+    seen = camera.see(surface.vertices[frames])[..., :2].reshape(-1, 2)
+    return seen.min(axis=0), seen.max(axis=0)
+
+
+def draw_triad(ax: Axes, x: float, y: float, length: float, camera: Camera) -> None:
+    """Draw the directions of x, y and z from the point (x, y) of the picture."""
+    for name, tip in zip("xyz", camera.see(np.eye(3))[:, :2] * length, strict=True):
+        ax.annotate(
+            "",
+            (x + tip[0], y + tip[1]),
+            (x, y),
+            arrowprops={"arrowstyle": "-|>,head_width=.12,head_length=.25", "lw": 0.7, "color": style.INK,
+                        "shrinkA": 0, "shrinkB": 0},
+        )
+        place = np.array([x, y]) + tip * 1.3
+        ax.text(*place, name, fontsize=7, fontstyle="italic", ha="center", va="center_baseline")
+
+
+def dimensions(result: Result) -> str:
+    """Return the words beneath a deformed picture."""
+    numbers = summary(result)
+    return (
+        f"dimension {numbers['dimension_mm']:.0f} mm, rise {numbers['rise_mm']:+.1f} mm, "
+        f"z from {numbers['lowest_mm']:.1f} to {numbers['highest_mm']:.1f} mm"
+    )
+
+
+def deformed(
+    result: Result, frame: int = -1, camera: Camera = Camera(), width: float = 4.6
+) -> Figure:
+    """Return the picture of a deformed grid.
+
+    Args:
+        result: what to show.
+        frame: which frame; the last by default.
+        camera: where the viewer is.
+        width: of the figure, inches.
+    """
+    with style.paper():
+        surface = skin(result)
+        low, high = extent(surface, camera, [0, frame])
+        span = high - low
+        margin, foot = 0.05 * float(max(span)), 0.62
+        height = width * (span[1] + 2 * margin) / (span[0] + 2 * margin) + foot
+        fig = Figure(figsize=(width, height), dpi=style.DPI)
+        ax = fig.add_axes((0, foot / height, 1, 1 - foot / height))
+        draw_ghost(ax, surface, camera)
+        draw_skin(ax, surface.vertices[frame], surface, result.grid.fixed, camera)
+        style.bare(ax, low, high, margin)
+        inch = (span[0] + 2 * margin) / width  # mm
+        style.scale_bar(ax, low[0], low[1] - margin - 0.14 * inch, style.nice_length(span[0]))
+        draw_triad(ax, high[0] - 0.3 * inch, low[1] - margin + 0.05 * inch, 0.24 * inch, camera)
+        fig.text(0.5, 0.4 / height, dimensions(result), ha="center", fontsize=7)
+        style.legend(fig, (width - style.LEGEND_WIDTH) / 2 + 0.1, 0.14)
+    return fig
+
+
+def _normals(corners: Array) -> Array:
+    normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def _sharp_edges(corners: Array, sharp: NDArray[np.bool_]) -> Array:
+    """Return the sharp edges (E, 2, d) of quadrilaterals with corners (Q, 4, d)."""
+    quad, k = np.nonzero(sharp)
+    return np.stack([corners[quad, k], corners[quad, (k + 1) % 4]], axis=1)

@@ -1,0 +1,188 @@
+"""Results in files: JSON for the shape, NPZ for everything.
+
+The JSON form holds what every program can use: design, corners, time. The NPZ form adds the
+stresses, the solver's record and the solid mesh, each array with its unit written beside it.
+"""
+
+import dataclasses
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.files import read_text, replacing
+from simulearn.grid import grid_from_dict, grid_to_dict
+from simulearn.simulate.result import FRAMES, Result
+
+SCHEMA = "simulearn.result/1"
+DIGITS = 6  # of a mm: a nanometre, below what any engine resolves
+SOLID = "solid_"
+UNITS = {
+    "joints": "mm; frame, joint, corner (bottom then top, counter-clockwise), xyz",
+    "beams": "mm; frame, beam, section (start, middle, end), "
+    "corner (right-bottom, left-bottom, right-top, left-top), xyz",
+    "stress": "MPa; frame, beam, section (start, before middle, after middle, end), corner, "
+    "component (11 22 33 12 13 23, global axes)",
+    "seconds": "s; time the simulation took",
+    "record": "JSON; what the engine tells about its work",
+    "displacements": "mm; frame, node of the solid, xyz",
+    "solid_nodes": "mm; node, xyz, in the flat grid",
+    "solid_bricks": "node indices; brick, 20 nodes in the order of scikit-fem's ElementHexS2",
+    "solid_parts": "what each brick belongs to: (beam, slab along it), or (-1, joint)",
+    "solid_slabs": "slabs along each beam",
+    "solid_points": "local coordinates 0 to 1 (along, across, up) of the integration points",
+    "solid_weights": "of the integration points, adding to one",
+    "solid_angle": "rad; direction of printing of each brick, from +x",
+    "solid_growth": "strain; brick, integration point, (along, across, thickness)",
+    "solid_stress": "MPa; brick, integration point, printed-in normal stress, the same axes",
+    "solid_fixed": "node indices; held nodes (lower half of the fixed joint)",
+    "solid_joints": "node indices; joint, corner",
+    "solid_beams": "node indices; beam, section, corner",
+}
+
+
+def result_to_dict(result: Result) -> dict[str, Any]:
+    """Return the machine form of a result, schema `simulearn.result/1`; mm, s."""
+    return {
+        "schema": SCHEMA,
+        "grid": grid_to_dict(result.grid),
+        "engine": result.engine,
+        "joints": _rounded(result.joints),
+        "beams": _rounded(result.beams),
+        "seconds": round(float(result.seconds), 3),
+    }
+
+
+def result_from_dict(data: Any) -> Result:
+    """Return the result of its machine form; stresses and mesh are not part of it.
+
+    Raises:
+        InputError: a key is missing or holds the wrong thing; the message names it.
+    """
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        raise InputError(f'schema: a result has "schema": "{SCHEMA}"')
+    for key in ("grid", "engine", "joints", "beams", "seconds"):
+        if key not in data:
+            raise InputError(f"{key}: is missing")
+    if not isinstance(data["engine"], str):
+        raise InputError("engine: is not a name")
+    if not isinstance(data["seconds"], int | float) or not np.isfinite(data["seconds"]):
+        raise InputError("seconds: is not a number")
+    grid = grid_from_dict(data["grid"])
+    return Result(
+        grid=grid,
+        engine=data["engine"],
+        joints=_numbers(data, "joints", (FRAMES, len(grid.joints), 8, 3)),
+        beams=_numbers(data, "beams", (FRAMES, len(grid.beams), 3, 4, 3)),
+        stress=None,
+        seconds=float(data["seconds"]),
+    )
+
+
+def write_json(result: Result, path: Path | str) -> None:
+    """Write the machine form of a result."""
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(result_to_dict(result), allow_nan=False), "utf-8")
+
+
+def read_json(path: Path | str) -> Result:
+    """Read a result from its JSON file.
+
+    Raises:
+        InputError: the file is missing or not a result.
+    """
+    try:
+        return result_from_dict(json.loads(read_text(path)))
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}: is not valid JSON: {error}") from error
+    except InputError as error:
+        raise error if str(path) in str(error) else InputError(f"{path}: {error}") from error
+
+
+def write_npz(result: Result, path: Path | str) -> None:
+    """Write all that a result holds as compressed NumPy arrays; `units` describes them."""
+    arrays: dict[str, Any] = {
+        "schema": SCHEMA,
+        "grid": json.dumps(grid_to_dict(result.grid)),
+        "engine": result.engine,
+        "joints": result.joints,
+        "beams": result.beams,
+        "seconds": result.seconds,
+        "record": json.dumps(result.record, default=_plain),
+    }
+    if result.stress is not None:
+        arrays["stress"] = result.stress
+    if result.displacements is not None:
+        arrays["displacements"] = result.displacements
+    if result.solid is not None:
+        for field in dataclasses.fields(result.solid):
+            arrays[SOLID + field.name] = getattr(result.solid, field.name)
+    arrays["units"] = json.dumps({key: UNITS[key] for key in arrays if key in UNITS})
+    with replacing(path) as temporary:
+        np.savez_compressed(temporary, **arrays)
+
+
+def read_npz(path: Path | str) -> Result:
+    """Read a result from its NPZ file.
+
+    Raises:
+        InputError: the file is missing or not a result.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {key: file[key] for key in file.files}
+    except FileNotFoundError as error:
+        raise InputError(f"{path}: there is no such file") from error
+    except (OSError, ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: is not an NPZ file") from error
+    solid = {
+        k.removeprefix(SOLID): v if v.ndim else v.item()
+        for k, v in arrays.items()
+        if k.startswith(SOLID)
+    }
+    try:
+        base = result_from_dict(
+            {
+                **{key: arrays[key].item() for key in ("schema", "engine", "seconds")},
+                **{key: arrays[key] for key in ("joints", "beams")},
+                "grid": json.loads(arrays["grid"].item()),
+            }
+        )
+        record = json.loads(arrays["record"].item())
+    except (KeyError, ValueError) as error:
+        raise InputError(f"{path}: is not a result: {error}") from error
+    if solid:
+        from simulearn.fea import Solid
+    return dataclasses.replace(
+        base,
+        stress=arrays.get("stress"),
+        record=record,
+        solid=Solid(**solid) if solid else None,
+        displacements=arrays.get("displacements"),
+    )
+
+
+def _rounded(array: NDArray[np.float64]) -> Any:
+    return (np.round(array, DIGITS) + 0.0).tolist()  # + 0.0 turns -0.0 into 0.0
+
+
+def _numbers(data: dict[str, Any], key: str, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    try:
+        array = np.asarray(data[key], dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{key}: is not an array of numbers") from error
+    if array.shape != shape:
+        raise InputError(f"{key}: has the shape {array.shape}; this grid's is {shape}")
+    if not np.isfinite(array).all():
+        raise InputError(f"{key}: holds a number that is not finite")
+    return array
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return str(value)

@@ -1,0 +1,38 @@
+"""A result in a few numbers."""
+
+from typing import Any
+
+import numpy as np
+
+from simulearn.simulate.result import Result
+
+
+def summary(result: Result) -> dict[str, Any]:
+    """Return the numbers that say at a glance what a grid did, mm and s.
+
+    Returns:
+        dimension_mm: largest distance from the fixed joint to another one, flat.
+        lowest_mm, highest_mm: z of the lowest and highest corner of the last frame.
+        rise_mm: the largest rise (or fall) of a joint centre, joint_risen: which joint.
+        moved_mm: the largest distance a joint centre moved, joint_moved: which joint.
+        seconds: time the simulation took.
+        iterations: iterations of the solver in all, where the engine counts them.
+    """
+    flat, last = result.centres[0], result.centres[-1]
+    rise, moved = last[:, 2] - flat[:, 2], np.linalg.norm(last - flat, axis=1)
+    risen, far = int(np.abs(rise).argmax()), int(moved.argmax())
+    z = np.concatenate([result.joints[-1].reshape(-1, 3), result.beams[-1].reshape(-1, 3)])[:, 2]
+    numbers = {
+        "dimension_mm": result.grid.dimension,
+        "lowest_mm": float(z.min()),
+        "highest_mm": float(z.max()),
+        "rise_mm": float(rise[risen]),
+        "joint_risen": risen,
+        "moved_mm": float(moved[far]),
+        "joint_moved": far,
+        "seconds": float(result.seconds),
+    }
+    iterations = result.record.get("iterations")
+    if iterations is not None:
+        numbers["iterations"] = int(np.sum(iterations))
+    return {k: round(v, 6) if isinstance(v, float) else v for k, v in numbers.items()}
