@@ -9,8 +9,8 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 
 import numpy as np
-from report import Report
 
+from report import Report
 from simulearn.errors import ComputationError
 from simulearn.fea import simulate_grid
 from simulearn.grid import Rules, draw, validate
@@ -74,7 +74,8 @@ def main() -> None:
         f"{60 * len(done) / wall:.0f} trials of 12 frames a minute; "
         f"iterations a trial: median {np.median([r[3] for r in done]):.0f}, "
         f"most {max(r[3] for r in done)}; trials with a halved increment: "
-        f"{sum(r[4] > 0 for r in done)}; mean grid dimension {np.mean([r[5] for r in done]):.1f} mm, "
+        f"{sum(r[4] > 0 for r in done)}; mean grid dimension "
+        f"{np.mean([r[5] for r in done]):.1f} mm, "
         f"mean motion of the joints {np.mean([100 * r[6] / r[5] for r in done]):.1f} % of it."
     )
     for r in results:

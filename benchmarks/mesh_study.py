@@ -8,8 +8,8 @@ The reference has twice as many bricks in every direction: 3,648 for a 2x2 grid.
 import argparse
 
 import numpy as np
-from report import Report
 
+from report import Report
 from simulearn.fea import COARSE, THREE_ACROSS, Layout, simulate_grid
 from simulearn.grid import Rules, draw_valid
 from simulearn.material import load_material

@@ -3,10 +3,10 @@
 python benchmarks/verify.py
 """
 
-import ladder
 import numpy as np
-from report import Report
 
+import ladder
+from report import Report
 from simulearn.fea import Layout, simulate_grid
 from simulearn.fea.bar import bar, curvature
 from simulearn.fea.equilibrium import Control

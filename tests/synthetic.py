@@ -37,7 +37,7 @@ def saddle(p, s, height=2.2e-3):
     return mid + z[:, None] * normal / np.linalg.norm(normal, axis=1, keepdims=True)
 
 
-def cylinder(p, s, curvature=np.radians(1.95) / 2):
+def cylinder(p, s, curvature=0.017):
     """Roll points (N, 3) of the flat grid up around the y axis."""
     x, y, z = p.T
     k = max(s * curvature, 1e-12)
@@ -96,14 +96,16 @@ def _solid(grid, joints, beams):
             a, b = ((1 - u) * sections[0] + u * sections[2] for u in (k / SLABS, (k + 1) / SLABS))
             bricks.append(_block(np.array([a[0], b[0], a[1], b[1], a[2], b[2], a[3], b[3]]), local))
     every = np.concatenate(bricks)
-    _, first, index = np.unique(
-        np.round(every, 6), axis=0, return_index=True, return_inverse=True
-    )
+    _, first, index = np.unique(np.round(every, 6), axis=0, return_index=True, return_inverse=True)
     nodes = every[first]
     number = lambda p: np.linalg.norm(nodes - p[..., None, :], axis=-1).argmin(axis=-1)  # noqa: E731
     known = {
         "nodes": nodes,
         "bricks": index.reshape(-1, 20),
+        "parts": np.array(
+            [(-1, j) for j in range(len(joints))]
+            + [(b, k) for b in range(len(beams)) for k in range(SLABS)]
+        ),
         "fixed": np.array([0]),
         "joints": number(joints),
         "beams": number(beams),

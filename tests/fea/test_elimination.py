@@ -1,12 +1,12 @@
 """Block elimination solves the same system as a sparse solver."""
 
 import jax.numpy as jnp
-import ladder
 import numpy as np
 import pytest
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
+import ladder
 from simulearn.fea import COARSE, THREE_ACROSS, Layout, mesh
 from simulearn.fea.elimination import condense, expand, solve_joints
 from simulearn.fea.kernel import points_of, respond

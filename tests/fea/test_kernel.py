@@ -1,11 +1,11 @@
 """The compiled bricks obey the laws that any finite element must obey."""
 
 import jax.numpy as jnp
-import ladder
 import numpy as np
 import pytest
 from test_laws import LAWS, NAMES
 
+import ladder
 from simulearn.fea.kernel import points_of, respond
 from simulearn.fea.laws import Law
 

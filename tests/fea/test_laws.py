@@ -1,11 +1,11 @@
-"""Constitutive laws: stress and moduli are derivatives of the energy, and the test is reproduced."""
+"""Constitutive laws: derivatives of their energies, and true to the test they come from."""
 
 import jax
 import jax.numpy as jnp
-import ladder
 import numpy as np
 import pytest
 
+import ladder
 from simulearn.fea.laws import Law, Marlow, NeoHookean, StVenantKirchhoff, law_of
 from simulearn.material import ElasticData
 

@@ -96,7 +96,9 @@ def test_growth_follows_the_printing() -> None:
     np.testing.assert_allclose(beams[0, :, 1, 0], [passive] * 8)
     np.testing.assert_allclose(beams[1, :, 1, 0], [active] * 8)
     np.testing.assert_allclose(beams[1, :, 1, 1], [passive] * 8)
-    np.testing.assert_allclose(beams[:, :, [0, 2]], np.array([-1, nu, nu]) * e.shell + 0 * beams[:, :, [0, 2]])
+    np.testing.assert_allclose(
+        beams[:, :, [0, 2]], np.array([-1, nu, nu]) * e.shell + 0 * beams[:, :, [0, 2]]
+    )
     joint = np.array([nu - 1, nu - 1, 2 * nu]) * e.joint
     np.testing.assert_allclose(growth[: 9 * 18], joint + 0 * growth[: 9 * 18])
 

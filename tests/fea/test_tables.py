@@ -1,9 +1,9 @@
 """Published solutions: bending, shear, curved beams, bilayers, sag, creep, calibration."""
 
-import ladder
 import numpy as np
 import pytest
 
+import ladder
 from simulearn.fea import simulate_grid
 from simulearn.fea.bar import bar, curvature
 

@@ -1,9 +1,9 @@
 """A trial as a whole: its frames, its symmetry, its stress, and how it fails."""
 
-import ladder
 import numpy as np
 import pytest
 
+import ladder
 from simulearn.errors import ComputationError
 from simulearn.fea import Control, Trial, simulate_grid
 from simulearn.grid import Grid, drop_beams, make
@@ -93,8 +93,12 @@ def test_progress_is_told_frame_by_frame() -> None:
     [
         make("dome", (2, 3), 50.0),
         drop_beams(make("wave"), [0, 5]),
-        Grid([[0, 0], [60, 5], [65, 60], [-5, 55]], [[0, 1], [1, 2], [3, 2], [3, 0]],
-             [0.3, -0.62, 1, 0], 2),
+        Grid(
+            [[0, 0], [60, 5], [65, 60], [-5, 55]],
+            [[0, 1], [1, 2], [3, 2], [3, 0]],
+            [0.3, -0.62, 1, 0],
+            2,
+        ),
     ],
     ids=["2x3", "beams missing", "one skewed cell, odd ratios"],
 )

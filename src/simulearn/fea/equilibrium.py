@@ -155,7 +155,7 @@ class Equilibrium:
             self.iterations += 1
             if change < self.control.tolerance:
                 return State(s, g, np.asarray(u), np.asarray(carried), stable)
-            if not change < 10 * least:
+            if not change < 100 * least:
                 break
             least = min(least, change)
         raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")

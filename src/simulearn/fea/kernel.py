@@ -75,7 +75,9 @@ def points_of(solid: Solid) -> Points:
             basis = _basis(solid.nodes, solid.bricks[chosen], rule)
             gradients[chosen] = np.stack([n[0].grad for n in basis.basis]).transpose(2, 3, 0, 1)
             volumes[chosen] = basis.dx
-            load[chosen] = np.stack([(np.asarray(n[0]) * basis.dx).sum(axis=1) for n in basis.basis], 1)
+            load[chosen] = np.stack(
+                [(np.asarray(n[0]) * basis.dx).sum(axis=1) for n in basis.basis], 1
+            )
     c, s = np.cos(solid.angle), np.sin(solid.angle)
     zero, one = np.zeros_like(c), np.ones_like(c)
     frame = np.stack([[c, s, zero], [-s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)

@@ -80,7 +80,7 @@ def simulate_grid(
     grid: Grid,
     material: Material,
     layout: Layout = COARSE,
-    control: Control = Control(),  # noqa: B008
+    control: Control = Control(),
     progress: Progress | None = None,
 ) -> Trial:
     """Simulate a grid in its bath.

@@ -27,10 +27,10 @@ def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
     top = _normals(corners)[:, 2] > 0.5
     seen = camera.see(corners)[..., :2]
     draw: Any = ax.add_collection
-    fill = {"facecolors": style.GHOST, "edgecolors": style.GHOST, "linewidths": 0.4}
+    fill: dict[str, Any] = {"facecolors": style.GHOST, "edgecolors": style.GHOST, "linewidths": 0.4}
     draw(PolyCollection(list(seen[top]), zorder=1, **fill))
     lines = _sharp_edges(seen, surface.sharp & top[:, None])
-    line = {"facecolors": "none", "edgecolors": style.GHOST_LINE, "linewidths": 0.5}
+    line: dict[str, Any] = {"facecolors": "none", "edgecolors": style.GHOST_LINE, "linewidths": 0.5}
     draw(PolyCollection(list(lines), closed=False, zorder=1.1, **line))
 
 
@@ -82,11 +82,26 @@ def draw_triad(ax: Axes, x: float, y: float, length: float, camera: Camera) -> N
             "",
             (x + tip[0], y + tip[1]),
             (x, y),
-            arrowprops={"arrowstyle": "-|>,head_width=.12,head_length=.25", "lw": 0.7, "color": style.INK,
-                        "shrinkA": 0, "shrinkB": 0},
+            arrowprops={
+                "arrowstyle": "-|>,head_width=.12,head_length=.25",
+                "lw": 0.7,
+                "color": style.INK,
+                "shrinkA": 0,
+                "shrinkB": 0,
+            },
+            annotation_clip=False,
         )
-        place = np.array([x, y]) + tip * 1.3
-        ax.text(*place, name, fontsize=7, fontstyle="italic", ha="center", va="center_baseline")
+        at_x, at_y = np.array([x, y]) + tip[:2] * 1.3
+        ax.text(
+            at_x,
+            at_y,
+            name,
+            fontsize=7,
+            fontstyle="italic",
+            ha="center",
+            va="center_baseline",
+            clip_on=False,
+        )
 
 
 def dimensions(result: Result) -> str:
@@ -99,7 +114,7 @@ def dimensions(result: Result) -> str:
 
 
 def deformed(
-    result: Result, frame: int = -1, camera: Camera = Camera(), width: float = 4.6
+    result: Result, frame: int = -1, camera: Camera = Camera(), width: float = 5.2
 ) -> Figure:
     """Return the picture of a deformed grid.
 

@@ -42,14 +42,10 @@ def draw_flat(ax: Axes, grid: Grid, numbers: bool = True) -> tuple[Array, Array]
     none = np.zeros(len(ratio))
     active = np.abs(ratio) > 0
     draw: Any = ax.add_collection
-    edge = {"edgecolors": style.LINE, "linewidths": 0.6, "joinstyle": "round"}
+    edge: dict[str, Any] = {"edgecolors": style.LINE, "linewidths": 0.6, "joinstyle": "round"}
     draw(PolyCollection(list(between(none, none + 1)), facecolors=style.PASSIVE, **edge))
     a, b = (1 - np.abs(ratio)) / 2, (1 + np.abs(ratio)) / 2
-    draw(
-        PolyCollection(
-            list(between(a, b)[active]), facecolors=style.tint(ratio[active]), **edge
-        )
-    )
+    draw(PolyCollection(list(between(a, b)[active]), facecolors=style.tint(ratio[active]), **edge))
     faces = [style.FIXED if j == grid.fixed else style.JOINT for j in range(len(grid.joints))]
     draw(PolyCollection(list(shape.joints), facecolors=faces, **edge))
     if numbers:
@@ -68,7 +64,7 @@ def _numbers(ax: Axes, grid: Grid, middles: Array) -> None:
         ax.text(x, y, str(b), color="white" if strong else style.INK, fontsize=5.5, **centre)
 
 
-def flat(grid: Grid, numbers: bool = True, width: float = 4.6) -> Figure:
+def flat(grid: Grid, numbers: bool = True, width: float = 5.2) -> Figure:
     """Return the picture of a flat grid.
 
     Args:

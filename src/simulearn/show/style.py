@@ -80,6 +80,7 @@ def scale_bar(ax: Axes, x: float, y: float, length: float) -> None:
         textcoords="offset points",
         ha="center",
         va="bottom",
+        annotation_clip=False,
     )
 
 
@@ -109,4 +110,4 @@ def legend(fig: Figure, left: float, bottom: float) -> None:
         x = words(x + size + gap, name) + 0.14
 
 
-LEGEND_WIDTH = 4.6  # inches
+LEGEND_WIDTH = 5.0  # inches

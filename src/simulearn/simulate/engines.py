@@ -68,10 +68,8 @@ def _checked(grid: Grid) -> tuple[Grid, Material]:
     errors = validate(grid, material).errors
     if errors:
         more = f" (and {len(errors) - 1} more; `simulearn validate` shows all)"
-        raise InputError(
-            f"{errors[0].where}: {errors[0].message}{more if len(errors) > 1 else ''}"
-        )
-    return clean(grid).centred, material
+        raise InputError(errors[0].message + (more if len(errors) > 1 else ""))
+    return clean(grid)[0].centred, material
 
 
 def _fea() -> Simulator:

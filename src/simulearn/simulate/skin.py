@@ -6,6 +6,7 @@ nodes of the solid mesh where the engine has one, else the parabola through the 
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -123,7 +124,7 @@ def _beam(result: Result, b: int, spacing: float) -> list[_Patch]:
     length = float(np.linalg.norm(middle[2] - middle[0]))
     stops = np.unique(np.clip([0, (1 - abs(ratio)) / 2, (1 + abs(ratio)) / 2, 1], 0, 1))
     patches = []
-    for a, z in zip(stops[:-1], stops[1:], strict=True):
+    for a, z in pairwise(stops):
         t = np.linspace(a, z, 1 + max(1, int(np.ceil((z - a) * length / spacing))))
         ring = np.einsum("rc,fncx->fnrx", RING, edges(result, b, t))
         active = ratio != 0 and abs(a + z - 1) < abs(ratio)  # the run whose centre is inside

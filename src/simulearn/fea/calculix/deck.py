@@ -15,12 +15,9 @@ Array = NDArray[np.float64]
 
 # CalculiX stops at half a per cent of the mean force; so close, a slender grid is still moving.
 # And the residual of slender, turning beams rises and falls before it converges. By default
-# CalculiX calls that divergence after 4 iterations and shortens the increment, which is of no use
-# to a strain that acts at once: let it go on (iterations I0, IR, IP, IC, IL, IG, IA).
-BEGIN = """*STEP, NLGEOM, INC=200
-*STATIC
-1., 1., 1e-4, 1.
-*CONTROLS, PARAMETERS=FIELD
+# CalculiX calls that divergence after 4 iterations: let it go on (iterations I0, IR, IP, IC, IL,
+# IG, IA of its manual).
+CONTROLS = """*CONTROLS, PARAMETERS=FIELD
 1e-5, 1e-3
 *CONTROLS, PARAMETERS=TIME INCREMENTATION
 12, 16, 9, 40, 10, 4, , 5
@@ -35,6 +32,17 @@ END = "*END STEP\n"
 
 # Gravity is given as an acceleration: a density of one makes it a body force.
 DENSITY = "*DENSITY\n1.\n"
+
+
+def begin(strained: bool) -> str:
+    """Return the cards that begin a step.
+
+    Args:
+        strained: whether initial strains change in it. They act at once, so that shortening the
+            increment would not help: it is one, or fails.
+    """
+    procedure = "*STATIC, DIRECT\n1., 1." if strained else "*STATIC\n1., 1., 1e-3, 1."
+    return f"*STEP, NLGEOM, INC=200\n{procedure}\n{CONTROLS}"
 
 
 def gravity(load: float) -> str:

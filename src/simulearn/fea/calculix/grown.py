@@ -88,7 +88,7 @@ def _material(
 def _steps(angle: Array, growth: Array, steps: Sequence[Step]) -> Iterable[str]:
     before = 0.0
     for step in steps:
-        yield deck.BEGIN
+        yield deck.begin(strained=step.release != before)
         yield f"*TEMPERATURE\nNODES, {deck.numbers([step.release])}\n"
         if step.release != before:
             old, new = (initial_strain(angle, growth, s) for s in (before, step.release))

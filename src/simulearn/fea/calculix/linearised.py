@@ -9,7 +9,7 @@ one for each brick, the mean of its points; E0 is exact at each point.
 Elements, kinematics, equilibrium and load are CalculiX's; the law is ours (see `moduli`).
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import jax.numpy as jnp
 import numpy as np
@@ -63,31 +63,35 @@ def solve(ccx: Ccx, solid: Solid, law: Law, steps: Sequence[Step], told: Told) -
 
 
 def _advance(problem: "_Problem", past: Past, step: Step, halvings: int) -> State:
-    """Solve a step, in halves where it does not converge at once."""
-    try:
-        state = problem.equilibrium(step, _extrapolated(past, step))
-    except NotConvergedError as error:
-        if not halvings:
-            raise ComputationError(f"at {100 * step.release:.1f} % released: {error}") from error
-        last = past[-1][0]
-        middle = Step((last.release + step.release) / 2, (last.load + step.load) / 2, None)
-        half = _advance(problem, past, middle, halvings - 1)
-        rest = _advance(problem, past, step, halvings - 1)
-        counts = half.iterations + rest.iterations, half.runs + rest.runs
-        return State(rest.displacements, rest.stress, *counts)
-    past.append((step, state.displacements))
-    return state
+    """Solve a step: from an extrapolation, else from the last state, else in halves."""
+    reason: NotConvergedError
+    for start in _starts(past, step):
+        try:
+            state = problem.equilibrium(step, start)
+        except NotConvergedError as error:
+            reason = error
+        else:
+            past.append((step, state.displacements))
+            return state
+    if not halvings:
+        raise ComputationError(f"at {100 * step.release:.1f} % released: {reason}") from reason
+    last = past[-1][0]
+    middle = Step((last.release + step.release) / 2, (last.load + step.load) / 2, None)
+    half = _advance(problem, past, middle, halvings - 1)
+    rest = _advance(problem, past, step, halvings - 1)
+    counts = half.iterations + rest.iterations, half.runs + rest.runs
+    return State(rest.displacements, rest.stress, *counts)
 
 
-def _extrapolated(past: Past, step: Step) -> Array:
-    """Extrapolate through up to three past states under the same load (Lagrange)."""
+def _starts(past: Past, step: Step) -> Iterator[Array]:
+    """Yield an extrapolation through three past states under the same load, and the last state."""
     known = [(at.release, u) for at, u in past if at.load == step.load][-3:]
-    if len(known) < 2:
-        return past[-1][1]
-    u = np.zeros_like(known[0][1])
-    for s, value in known:
-        u += value * np.prod([(step.release - t) / (s - t) for t, _ in known if t != s])
-    return u
+    if len(known) == 3:
+        u = np.zeros_like(known[0][1])
+        for s, value in known:
+            u += value * np.prod([(step.release - t) / (s - t) for t, _ in known if t != s])
+        yield u
+    yield past[-1][1]
 
 
 class _Problem:
@@ -153,4 +157,4 @@ def _cards(moduli: Array, strain: Array, u: Array, load: float) -> Iterable[str]
     yield "*INITIAL CONDITIONS, TYPE=DISPLACEMENT\n"
     for k, move in enumerate(u, 1):
         yield from (f"{k}, {axis}, {deck.numbers([x])}\n" for axis, x in enumerate(move, 1))
-    yield deck.BEGIN + deck.gravity(load) + deck.PRINT + deck.END
+    yield deck.begin(strained=True) + deck.gravity(load) + deck.PRINT + deck.END

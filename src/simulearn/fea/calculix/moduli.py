@@ -30,7 +30,7 @@ def moduli_of(law: Law) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
         C = jnp.eye(3) + 2 * (half + half.T)
         inverse = frame.T @ jnp.diag(1 / stretch) @ frame
         # An isotropic law cannot tell F_e from any other root of C_e.
-        F = jnp.linalg.cholesky(inverse @ C @ inverse).T
+        F = _root(inverse @ C @ inverse)
         return stretch.prod() * law.energy(F[:, :, None])[0]
 
     def both(strain: Array, frame: Array, stretch: Array) -> tuple[Array, Array]:
@@ -38,3 +38,15 @@ def moduli_of(law: Law) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
         return jax.grad(energy)(*point), jax.hessian(energy)(*point)
 
     return jax.jit(jax.vmap(both))
+
+
+def _root(C: Array) -> Array:
+    """Return the upper triangular F (3, 3) with F^T F = C."""
+    # Written out: the library's routine works matrix by matrix and cannot be fused.
+    a = jnp.sqrt(C[0, 0])
+    b, c = C[0, 1] / a, C[0, 2] / a
+    d = jnp.sqrt(C[1, 1] - b**2)
+    e = (C[1, 2] - b * c) / d
+    f = jnp.sqrt(C[2, 2] - c**2 - e**2)
+    zero = jnp.zeros(())
+    return jnp.array([[a, b, c], [zero, d, e], [zero, zero, f]])

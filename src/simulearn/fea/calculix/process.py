@@ -17,7 +17,7 @@ from simulearn.errors import ComputationError, InputError
 from simulearn.fea.calculix.output import last_error, read_sta
 
 # Words of messages by which CalculiX says that an increment, however short, did not converge.
-GIVEN_UP = ("cutbacks", "increment size", "max. # of increments")
+GIVEN_UP = ("diverge", "too many", "increment size", "max. # of increments")
 
 
 class NotConvergedError(ComputationError):

@@ -1,0 +1,229 @@
+"""The command line: what a user types, with errors of one line and an exit code for machines.
+
+Exit codes: 0 done, 1 the input is wrong, 2 usage, 3 the computation failed, 130 interrupted.
+Solvers and plotting are imported only by the command that needs them, so that the others are quick.
+"""
+
+import json
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from simulearn import __version__
+from simulearn.errors import ComputationError, InputError
+from simulearn.grid import Grid, grid_to_dict, library, make, read_grid, validate, write_grid
+from simulearn.grid.validation import Validation
+from simulearn.material import load_material
+
+if TYPE_CHECKING:
+    from simulearn.simulate import Progress, Result
+
+app = typer.Typer(
+    name="simulearn",
+    help="The shape a flat 4D-printed grid takes in hot water.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+out = Console()
+err = Console(stderr=True, soft_wrap=True, highlight=False)
+
+GridArgument = Annotated[
+    str, typer.Argument(metavar="GRID", help="A grid file (.json), or a name from the library.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print the machine form.")]
+
+
+@app.callback(invoke_without_command=True)
+def root(
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Simulate, validate and draw 4D-printed grids."""
+    if version:
+        print(f"simulearn {__version__}")
+        raise typer.Exit
+
+
+@app.command()
+def simulate(
+    grid: GridArgument,
+    engine: Annotated[str, typer.Option(help="Who answers: fea or calculix.")] = "fea",
+    output: Annotated[
+        list[Path] | None,
+        typer.Option("-o", "--output", help="A file to write; its ending picks the format."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Simulate a grid: twelve frames, from flat through release to creep."""
+    from simulearn import outputs
+    from simulearn.simulate import engine as engine_of
+    from simulearn.simulate import result_to_dict, summary
+
+    files = output or []
+    design = _grid(grid)
+    outputs.check(files)
+    answering = engine_of(engine)
+    for warning in _validated(design).warnings:
+        err.print(f"[yellow]warning:[/] {warning.message}")
+    with _progress(quiet=as_json) as progress:
+        result = answering.simulate([design], progress)[0]
+    if "note" in result.record:
+        err.print(f"[yellow]note:[/] {result.record['note']}")
+    for path in files:
+        outputs.write(result, path)
+    if as_json:
+        written = {"files": [str(p) for p in files], "engine": engine, "summary": summary(result)}
+        print(json.dumps(written if files else result_to_dict(result), allow_nan=False))
+        return
+    out.print(_table(result))
+    for path in files:
+        out.print(f"wrote {path}")
+
+
+@app.command("validate")
+def validate_(grid: GridArgument, as_json: Json = False) -> None:
+    """Check a grid: errors keep it from being simulated, warnings do not."""
+    report = _validated(_grid(grid))
+    if as_json:
+        print(json.dumps(report.to_dict()))
+    else:
+        for message in report.errors:
+            out.print(f"[red]error[/] {message.message} [dim]({message.code})[/]")
+        for message in report.warnings:
+            out.print(f"[yellow]warning[/] {message.message} [dim]({message.code})[/]")
+        if report.valid:
+            out.print("[green]valid[/]")
+    if not report.valid:
+        raise typer.Exit(1)
+
+
+@app.command("library")
+def library_(
+    name: Annotated[str | None, typer.Argument(help="A grid of the library.")] = None,
+    cells: Annotated[str, typer.Option(help="Cells along x and y.")] = "2x2",
+    length: Annotated[float, typer.Option(help="Length of the beams, mm.")] = 65.0,
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="Write it here.")] = None,
+    as_json: Json = False,
+) -> None:
+    """List the library of grids, or make one of them."""
+    if name is None:
+        if as_json:
+            print(json.dumps(library()))
+            return
+        table = Table("name", "what it does", box=None)
+        for title, words in library().items():
+            table.add_row(title, words)
+        out.print(table)
+        return
+    grid = make(name, _cells(cells), length)
+    if output is not None:
+        write_grid(grid, output)
+        out.print(f"wrote {output}")
+    if as_json or output is None:
+        print(json.dumps(grid_to_dict(grid)))
+
+
+def main() -> None:
+    """Run the command line; every failure is one line and an exit code."""
+    try:
+        app(standalone_mode=False)
+    except typer.Exit as stop:
+        sys.exit(stop.exit_code)
+    except (typer.Abort, KeyboardInterrupt):
+        _fail("interrupted", 130)
+    except InputError as error:
+        _fail(str(error), 1)
+    except ComputationError as error:
+        _fail(str(error), 3)
+    except Exception as error:
+        if hasattr(error, "exit_code") and hasattr(error, "format_message"):  # usage
+            _fail(f"{error.format_message()} (see simulearn --help)", int(error.exit_code))
+        if os.environ.get("SIMULEARN_DEBUG"):
+            raise
+        what = f"{type(error).__name__}: {error}"
+        _fail(f"unexpected {what} (SIMULEARN_DEBUG=1 shows where)", 3)
+
+
+def _fail(message: str, code: int) -> None:
+    line = " ".join(message.split())
+    err.print(f"[red]simulearn:[/] {_plain(line)}")
+    sys.exit(code)
+
+
+def _plain(text: str) -> str:
+    return text.replace("[", r"\[")  # rich reads brackets as markup
+
+
+def _grid(name: str) -> Grid:
+    """Return the grid of a file, or of the library if there is no such file."""
+    if not Path(name).exists() and name in library():
+        return make(name)
+    return read_grid(name)
+
+
+def _validated(grid: Grid) -> Validation:
+    return validate(grid, load_material(grid.material))
+
+
+def _cells(text: str) -> tuple[int, int]:
+    parts = text.lower().split("x")
+    if len(parts) != 2 or not all(part.isdecimal() and int(part) > 0 for part in parts):
+        raise InputError(f'--cells is "{text}"; it is two numbers as in 2x3')
+    return int(parts[0]), int(parts[1])
+
+
+@contextmanager
+def _progress(quiet: bool) -> "Iterator[Progress | None]":
+    """Yield what an engine tells its frames to: a bar on the terminal, or nothing."""
+    if quiet or not err.is_terminal:
+        yield None
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("frames"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=err, transient=True) as bar:
+        task = bar.add_task("frames", total=12)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def _table(result: "Result") -> Table:
+    """Return where the joints are, flat and at the end."""
+    from simulearn.simulate import summary
+
+    numbers: dict[str, Any] = summary(result)
+    table = Table(
+        "joint",
+        "flat x, y",
+        "morphed x, y, z",
+        "moved",
+        box=None,
+        title=(
+            f"{len(result.grid.joints)} joints, {len(result.grid.beams)} beams, "
+            f"dimension {numbers['dimension_mm']:.1f} mm: z from {numbers['lowest_mm']:.1f} to "
+            f"{numbers['highest_mm']:.1f} mm"
+        ),
+        caption=f"{result.engine}, {result.seconds:.1f} s; millimetres, +z up",
+        title_justify="left",
+        caption_justify="left",
+    )
+    for k, (a, b) in enumerate(zip(result.centres[0], result.centres[-1], strict=True)):
+        moved = float(((b - a) ** 2).sum() ** 0.5)
+        name = f"{k} fixed" if k == result.grid.fixed else str(k)
+        table.add_row(
+            name,
+            f"{a[0]:8.1f} {a[1]:8.1f}",
+            f"{b[0]:8.1f} {b[1]:8.1f} {b[2]:8.1f}",
+            f"{moved:6.1f}",
+        )
+    return table
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,88 @@
+"""Which file endings a result can be written to, and who writes them.
+
+All files are checked before anything is computed: a wrong name should not cost a simulation.
+"""
+
+import importlib.util
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from simulearn.errors import InputError
+from simulearn.simulate import Result, write_json, write_npz
+
+Writer = Callable[[Result, Path], None]
+
+
+def _png(result: Result, path: Path) -> None:
+    from simulearn.show import save_figure
+
+    save_figure(result, path)
+
+
+def _gif(result: Result, path: Path) -> None:
+    from simulearn.show import save_animation
+
+    save_animation(result, path)
+
+
+def _surface(result: Result, path: Path) -> None:
+    from simulearn.interop import write_surface
+
+    write_surface(result, path)
+
+
+def _vtu(result: Result, path: Path) -> None:
+    from simulearn.interop import write_vtu
+
+    write_vtu(result, path)
+
+
+def _pvd(result: Result, path: Path) -> None:
+    from simulearn.interop import write_pvd
+
+    write_pvd(result, path)
+
+
+WRITERS: dict[str, Writer] = {
+    ".json": write_json,
+    ".npz": write_npz,
+    ".png": _png,
+    ".gif": _gif,
+    ".glb": _surface,
+    ".stl": _surface,
+    ".vtu": _vtu,
+    ".pvd": _pvd,
+}
+NEEDS = {".vtu": ("meshio", "vtk"), ".pvd": ("meshio", "vtk")}  # package, extra
+
+
+def check(paths: Sequence[Path]) -> None:
+    """Make sure that a result can be written to these files.
+
+    Raises:
+        InputError: an ending is unknown, a package is missing, or a place cannot be written.
+    """
+    for path in paths:
+        ending = path.suffix.lower()
+        if ending not in WRITERS:
+            raise InputError(f"{path}: the ending is not one of {' '.join(WRITERS)}")
+        if ending in NEEDS and importlib.util.find_spec(NEEDS[ending][0]) is None:
+            raise InputError(
+                f"{path}: needs a package: pip install 'simulearn[{NEEDS[ending][1]}]'"
+            )
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; name a file")
+        if not path.parent.is_dir():
+            raise InputError(f"{path}: the folder {path.parent} does not exist")
+        if not os.access(path.parent, os.W_OK):
+            raise InputError(f"{path}: the folder {path.parent} cannot be written")
+
+
+def write(result: Result, path: Path) -> None:
+    """Write a result in the format of the file's ending.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    WRITERS[path.suffix.lower()](result, path)
