@@ -14,12 +14,22 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from simulearn import __version__
 from simulearn.errors import ComputationError, InputError
-from simulearn.grid import Grid, grid_to_dict, library, make, read_grid, validate, write_grid
-from simulearn.grid.validation import Validation
+from simulearn.grid import (
+    Grid,
+    Message,
+    Validation,
+    grid_to_dict,
+    library,
+    make,
+    read_grid,
+    validate,
+    write_grid,
+)
 from simulearn.material import load_material
 
 if TYPE_CHECKING:
@@ -32,7 +42,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-out = Console()
+out = Console(soft_wrap=True, highlight=False)  # a message is one line, whoever reads it
 err = Console(stderr=True, soft_wrap=True, highlight=False)
 
 GridArgument = Annotated[
@@ -68,14 +78,14 @@ def simulate(
 
     files = output or []
     design = _grid(grid)
-    outputs.check(files)
+    outputs.check(files, Path(grid))
     answering = engine_of(engine)
     for warning in _validated(design).warnings:
-        err.print(f"[yellow]warning:[/] {warning.message}")
+        err.print(f"[yellow]warning:[/] {escape(warning.message)}")
     with _progress(quiet=as_json) as progress:
         result = answering.simulate([design], progress)[0]
     if "note" in result.record:
-        err.print(f"[yellow]note:[/] {result.record['note']}")
+        err.print(f"[yellow]note:[/] {escape(result.record['note'])}")
     for path in files:
         outputs.write(result, path)
     if as_json:
@@ -84,20 +94,25 @@ def simulate(
         return
     out.print(_table(result))
     for path in files:
-        out.print(f"wrote {path}")
+        out.print(f"wrote {escape(str(path))}")
 
 
 @app.command("validate")
 def validate_(grid: GridArgument, as_json: Json = False) -> None:
     """Check a grid: errors keep it from being simulated, warnings do not."""
-    report = _validated(_grid(grid))
+    try:
+        report = _validated(_grid(grid))
+    except InputError as error:
+        if as_json:  # machines get the same form, whatever is wrong
+            print(json.dumps(Validation((Message("input", "grid", str(error)),), ()).to_dict()))
+        raise
     if as_json:
         print(json.dumps(report.to_dict()))
     else:
         for message in report.errors:
-            out.print(f"[red]error[/] {message.message} [dim]({message.code})[/]")
+            out.print(f"[red]error[/] {escape(message.message)} [dim]({message.code})[/]")
         for message in report.warnings:
-            out.print(f"[yellow]warning[/] {message.message} [dim]({message.code})[/]")
+            out.print(f"[yellow]warning[/] {escape(message.message)} [dim]({message.code})[/]")
         if report.valid:
             out.print("[green]valid[/]")
     if not report.valid:
@@ -125,19 +140,18 @@ def library_(
     grid = make(name, _cells(cells), length)
     if output is not None:
         write_grid(grid, output)
-        out.print(f"wrote {output}")
+        out.print(f"wrote {escape(str(output))}")
     if as_json or output is None:
         print(json.dumps(grid_to_dict(grid)))
 
 
 def main() -> None:
     """Run the command line; every failure is one line and an exit code."""
+    code = None
     try:
-        app(standalone_mode=False)
-    except typer.Exit as stop:
-        sys.exit(stop.exit_code)
+        code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
     except (typer.Abort, KeyboardInterrupt):
-        _fail("interrupted", 130)
+        code = 130
     except InputError as error:
         _fail(str(error), 1)
     except ComputationError as error:
@@ -149,23 +163,27 @@ def main() -> None:
             raise
         what = f"{type(error).__name__}: {error}"
         _fail(f"unexpected {what} (SIMULEARN_DEBUG=1 shows where)", 3)
+    if code == 130:
+        _fail("interrupted", 130)
+    sys.exit(code)
 
 
 def _fail(message: str, code: int) -> None:
     line = " ".join(message.split())
-    err.print(f"[red]simulearn:[/] {_plain(line)}")
+    err.print(f"[red]simulearn:[/] {escape(line)}")
     sys.exit(code)
-
-
-def _plain(text: str) -> str:
-    return text.replace("[", r"\[")  # rich reads brackets as markup
 
 
 def _grid(name: str) -> Grid:
     """Return the grid of a file, or of the library if there is no such file."""
-    if not Path(name).exists() and name in library():
+    if name in library() and not Path(name).exists():
         return make(name)
-    return read_grid(name)
+    try:
+        return read_grid(name)
+    except InputError as error:
+        if isinstance(error.__cause__, FileNotFoundError) and not Path(name).suffix:
+            raise InputError(f"{name}: is neither a file nor a grid of the library") from error
+        raise
 
 
 def _validated(grid: Grid) -> Validation:

@@ -4,9 +4,9 @@ All files are checked before anything is computed: a wrong name should not cost 
 """
 
 import importlib.util
-import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from tempfile import TemporaryFile
 
 from simulearn.errors import InputError
 from simulearn.simulate import Result, write_json, write_npz
@@ -57,8 +57,12 @@ WRITERS: dict[str, Writer] = {
 NEEDS = {".vtu": ("meshio", "vtk"), ".pvd": ("meshio", "vtk")}  # package, extra
 
 
-def check(paths: Sequence[Path]) -> None:
+def check(paths: Sequence[Path], grid: Path | None = None) -> None:
     """Make sure that a result can be written to these files.
+
+    Args:
+        paths: the files.
+        grid: the file that the design comes from, which no result may replace.
 
     Raises:
         InputError: an ending is unknown, a package is missing, or a place cannot be written.
@@ -75,8 +79,13 @@ def check(paths: Sequence[Path]) -> None:
             raise InputError(f"{path}: is a folder; name a file")
         if not path.parent.is_dir():
             raise InputError(f"{path}: the folder {path.parent} does not exist")
-        if not os.access(path.parent, os.W_OK):
-            raise InputError(f"{path}: the folder {path.parent} cannot be written")
+        if grid is not None and grid.exists() and path.exists() and path.samefile(grid):
+            raise InputError(f"{path}: is the grid; name another file for its result")
+        try:  # trying is the only way to know that root and odd file systems answer to
+            with TemporaryFile(dir=path.parent):
+                pass
+        except OSError as error:
+            raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def write(result: Result, path: Path) -> None:

@@ -1,7 +1,9 @@
 """Results for ParaView: one frame as .vtu, all of them as a .pvd series."""
 
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,24 +37,22 @@ def write_vtu(result: Result, path: Path | str, frame: int = -1) -> None:
 
 
 def write_pvd(result: Result, path: Path | str) -> None:
-    """Write all frames: .vtu files in a folder beside a .pvd that names them.
+    """Write all frames: `NAME.pvd`, which names the files of the folder `NAME_frames` beside it.
 
-    The .pvd is written last, so that it never names a frame that is not there.
+    The frames are written elsewhere and moved when all of them are there.
 
     Raises:
         InputError: meshio is not installed, or a file cannot be written.
     """
     path = Path(path)
     folder = path.with_name(f"{path.stem}_frames")
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be made ({error.strerror})") from error
-    rows = []
-    for frame in range(FRAMES):
-        name = f"frame_{frame:02d}.vtu"
-        write_vtu(result, folder / name, frame)
-        rows.append(f'    <DataSet timestep="{frame}" file="{folder.name}/{name}"/>')
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{path}: its frames go to the folder {folder}, which is a file")
+    names = [f"frame_{frame:02d}.vtu" for frame in range(FRAMES)]
+    rows = [
+        f'    <DataSet timestep="{frame}" file={quoteattr(f"{folder.name}/{name}")}/>'
+        for frame, name in enumerate(names)
+    ]
     lines = [
         '<?xml version="1.0"?>',
         '<VTKFile type="Collection" version="0.1">',
@@ -61,8 +61,13 @@ def write_pvd(result: Result, path: Path | str) -> None:
         "  </Collection>",
         "</VTKFile>",
     ]
-    with replacing(path) as temporary:
-        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with replacing(path) as index, TemporaryDirectory(prefix=".", dir=path.parent) as elsewhere:
+        index.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        for frame, name in enumerate(names):
+            write_vtu(result, Path(elsewhere) / name, frame)
+        folder.mkdir(exist_ok=True)
+        for name in names:
+            (Path(elsewhere) / name).replace(folder / name)
 
 
 def _mesh(result: Result, frame: int) -> Any:

@@ -1,0 +1,409 @@
+"""The command line as a user runs it: what is printed, what is written, and the exit code."""
+
+import dataclasses
+import errno
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+
+import synthetic
+from simulearn import __version__, cli
+from simulearn.errors import ComputationError
+from simulearn.grid import grid_from_dict, grid_to_dict, library, make, read_grid
+from simulearn.simulate import ENGINES, read_json, read_npz
+from simulearn.simulate.engines import Engine
+
+SADDLE = grid_to_dict(make("saddle"))
+ENDINGS = ["json", "npz", "png", "gif", "glb", "stl", "vtu", "pvd"]
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Return a function that runs a command line: (exit code, stdout, stderr)."""
+
+    def run(*words):
+        monkeypatch.setattr(sys, "argv", ["simulearn", *map(str, words)])
+        try:
+            cli.main()
+            code = 0
+        except SystemExit as stop:
+            code = stop.code or 0
+        return code, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """Let a formula stand in for finite elements; return the grids that it was asked for."""
+    asked = []
+
+    def solver(grid, material, progress):
+        asked.append(grid)
+        progress(12, 12)
+        return synthetic.result(grid)
+
+    monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
+    return asked
+
+
+@pytest.fixture
+def failing(monkeypatch):
+    """Return a function that makes the solver raise an error."""
+
+    def fail(error):
+        def solver(grid, material, progress):
+            raise error
+
+        monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
+
+    return fail
+
+
+def refused(answer, code=1):
+    """Return the one line on stderr of a run that failed."""
+    assert answer[0] == code, answer
+    assert answer[1] == ""
+    (line,) = answer[2].splitlines()
+    return line
+
+
+def written(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+# simulate
+
+
+@pytest.mark.usefixtures("solved")
+def test_simulate_prints_where_the_joints_go(run):
+    code, out, err = run("simulate", "saddle")
+    assert (code, err) == (0, "")
+    assert "dimension 91.9 mm" in out
+    assert len([line for line in out.splitlines() if line.strip()[:1].isdigit()]) >= 9
+
+
+@pytest.mark.usefixtures("solved")
+def test_simulate_writes_every_format_at_once(run, tmp_path):
+    files = [tmp_path / f"saddle.{ending}" for ending in ENDINGS]
+    code, out, err = run("simulate", "saddle", *(word for f in files for word in ("-o", f)))
+    assert (code, err) == (0, "")
+    assert all(str(file) in out for file in files)  # whole, not broken to the terminal's width
+    at = dict(zip(ENDINGS, files, strict=True))
+    assert read_json(at["json"]).joints.shape == (12, 9, 8, 3)
+    assert read_npz(at["npz"]).stress.shape == (12, 12, 4, 4, 6)
+    with Image.open(at["png"]) as picture, Image.open(at["gif"]) as animation:
+        assert min(picture.size) > 400
+        assert animation.n_frames > 12
+    for ending in ("glb", "stl"):
+        assert not trimesh.load(at[ending]).is_empty
+    assert len(meshio.read(at["vtu"]).points) > 0
+    assert written(tmp_path) == sorted([*(file.name for file in files), "saddle_frames"])
+    assert len(written(tmp_path / "saddle_frames")) == 12
+
+
+@pytest.mark.usefixtures("solved")
+def test_simulate_gives_machines_the_result(run):
+    code, out, err = run("simulate", "saddle", "--json")
+    data = json.loads(out)
+    assert (code, err) == (0, "")
+    assert list(data) == ["schema", "grid", "engine", "joints", "beams", "seconds"]
+    assert (data["schema"], data["engine"]) == ("simulearn.result/1", "fea")
+    assert np.shape(data["joints"]) == (12, 9, 8, 3)
+    assert np.shape(data["beams"]) == (12, 12, 3, 4, 3)
+    grid_from_dict(data["grid"])
+
+
+@pytest.mark.usefixtures("solved")
+def test_simulate_tells_machines_what_was_written(run, tmp_path):
+    path = tmp_path / "a.npz"
+    code, out, _ = run("simulate", "saddle", "--json", "-o", path)
+    data = json.loads(out)
+    assert code == 0
+    assert data["files"] == [str(path)]
+    assert data["summary"]["dimension_mm"] == pytest.approx(65 * 2**0.5)
+
+
+def test_a_file_goes_before_a_library_name(run, solved, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("saddle").write_text(json.dumps(grid_to_dict(make("flat", (1, 1)))))
+    assert run("simulate", "saddle")[0] == 0
+    assert len(solved[0].joints) == 4
+
+
+@pytest.mark.usefixtures("solved")
+def test_warnings_are_shown_and_do_not_stop(run, tmp_path):
+    path = tmp_path / "long.json"
+    path.write_text(json.dumps(grid_to_dict(make("saddle", length=120))))
+    code, _, err = run("simulate", path)
+    assert code == 0
+    assert err.count("warning") == 12
+    assert "beam 3 is 120.00 mm long" in err
+
+
+# validate
+
+
+def test_validate_says_valid(run):
+    code, out, err = run("validate", "saddle")
+    assert (code, out.strip(), err) == (0, "valid", "")
+
+
+def test_validate_gives_machines_messages(run, tmp_path):
+    path = tmp_path / "grid.json"
+    path.write_text(json.dumps(SADDLE | {"joints": [[0, 0], *SADDLE["joints"][:8]]}))
+    code, out, _ = run("validate", path, "--json")
+    data = json.loads(out)
+    assert code == 1
+    assert list(data) == ["errors", "warnings"]
+    assert all(list(m) == ["code", "where", "message"] for m in data["errors"] + data["warnings"])
+    assert run("validate", "saddle", "--json")[:2] == (0, '{"errors": [], "warnings": []}\n')
+
+
+def test_validate_counts_a_file_that_is_no_grid_among_its_errors(run, tmp_path):
+    path = tmp_path / "grid.json"
+    path.write_text(json.dumps(SADDLE | {"actuators": [0.5]}))
+    code, out, _ = run("validate", path, "--json")
+    (error,) = json.loads(out)["errors"]
+    assert code == 1
+    assert "actuators has 1 ratios for 12 beams" in error["message"]
+
+
+# library
+
+
+def test_library_lists_its_grids(run):
+    code, out, _ = run("library")
+    assert code == 0
+    assert all(name in out for name in library())
+    assert json.loads(run("library", "--json")[1]) == library()
+
+
+def test_library_makes_grids_of_any_size(run, tmp_path):
+    path = tmp_path / "cone.json"
+    code, out, _ = run("library", "cone", "--cells", "3x2", "--length", "50", "-o", path)
+    assert code == 0
+    assert str(path) in out
+    grid = read_grid(path)
+    assert grid_to_dict(grid) == grid_to_dict(make("cone", (3, 2), 50.0))
+    assert json.loads(run("library", "cone", "--cells", "3x2", "--length", "50")[1])["fixed"] >= 0
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["pyramid"], 'design "pyramid" is not known; known are flat, cone'),
+        (["cone", "--cells", "2by2"], '"2by2"'),
+        (["cone", "--cells", "0x2"], '"0x2"'),
+        (["cone", "--length", "-5"], "-5"),
+        (["cone", "--length", "nan"], "nan"),
+        (["cone", "-o", "nowhere/cone.json"], "the folder nowhere does not exist"),
+    ],
+)
+def test_library_refuses(run, tmp_path, monkeypatch, words, says):
+    monkeypatch.chdir(tmp_path)
+    assert says in refused(run("library", *words))
+    assert written(tmp_path) == []
+
+
+# Wrong input: one line, exit code 1, nothing computed, nothing written
+
+
+def changed(**keys):
+    return json.dumps(SADDLE | keys)
+
+
+def apart():
+    """Two grids that no beam connects."""
+    joints = np.array(SADDLE["joints"])
+    return json.dumps(
+        SADDLE
+        | {
+            "joints": [*joints.tolist(), *(joints + np.array([300, 0])).tolist()],
+            "beams": [*SADDLE["beams"], *(np.array(SADDLE["beams"]) + len(joints)).tolist()],
+            "actuators": SADDLE["actuators"] * 2,
+        }
+    )
+
+
+WRONG = {
+    "bad JSON": ('{"joints": [', "is not valid JSON at line 1"),
+    "empty": ("", "is not valid JSON"),
+    "not an object": ("[1, 2]", "a grid is an object"),
+    "other schema": (changed(schema="simulearn.grid/9"), "schema is"),
+    "unknown key": (changed(colour="red"), '"colour" is not a key'),
+    "lengths": (changed(actuators=[0.5, 0.5]), "actuators has 2 ratios for 12 beams"),
+    "three coordinates": (changed(joints=[[0, 0, 0]] * 9), "joints[0] is"),
+    "NaN": (changed(joints=[[float("nan"), 0], *SADDLE["joints"][1:]]), "NaN"),
+    "index": (changed(beams=[[0, 99], *SADDLE["beams"][1:]]), "beams[0] is [0, 99]"),
+    "ratio": (changed(actuators=[1.3] + [0] * 11), "actuators[0] is 1.3"),
+    "fixed": (changed(fixed=9), "fixed is 9"),
+    "one place": (changed(joints=[SADDLE["joints"][1], *SADDLE["joints"][1:]]), "joint 1 lies"),
+    "disconnected": (apart(), "the grid is in 2 parts"),
+    "material": (changed(material="unobtainium"), "unobtainium"),
+    "brackets": (changed(material="[/red]"), "[/red]"),
+}
+
+
+@pytest.mark.parametrize("command", ["simulate", "validate"])
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_grid_is_refused_in_one_line(run, solved, tmp_path, command, case):
+    text, says = WRONG[case]
+    path = tmp_path / "grid.json"
+    path.write_text(text)
+    target = ["-o", tmp_path / "out.npz"] if command == "simulate" else []
+    code, out, err = run(command, path, *target)
+    assert code == 1
+    lines = (out + err).splitlines()
+    assert says in lines[0]
+    assert "Traceback" not in out + err
+    if command == "simulate":
+        assert len(lines) == 1
+        assert not out
+    assert not solved
+    assert written(tmp_path) == ["grid.json"]
+
+
+def test_a_missing_file_is_refused(run, tmp_path):
+    for command in ("simulate", "validate"):
+        assert "there is no such file" in refused(run(command, tmp_path / "none.json"))
+        assert "is a folder" in refused(run(command, tmp_path)).replace(
+            "Is a directory", "is a folder"
+        )
+
+
+def test_a_binary_file_is_refused(run, tmp_path):
+    path = tmp_path / "grid.json"
+    path.write_bytes(b"\xff\xfe\x00\x01")
+    assert "is not UTF-8 text" in refused(run("simulate", path))
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("out.xyz", "is not one of .json .npz .png .gif .glb .stl .vtu .pvd"),
+        ("out", "is not one of"),
+        ("none/out.json", "the folder none does not exist"),
+        ("folder.png", "is a folder"),
+        ("/proc/out.json", "cannot be written"),  # not even by root
+        ("grid.json", "is the grid"),
+    ],
+)
+def test_outputs_are_checked_before_computing(run, solved, tmp_path, monkeypatch, name, says):
+    monkeypatch.chdir(tmp_path)
+    Path("folder.png").mkdir()
+    Path("grid.json").write_text(json.dumps(SADDLE))
+    assert says in refused(run("simulate", "grid.json", "-o", "good.json", "-o", name))
+    assert not solved
+    assert written(tmp_path) == ["folder.png", "grid.json"]
+
+
+def test_a_missing_package_is_named_before_computing(run, solved, monkeypatch, tmp_path):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    for ending in ("vtu", "pvd"):
+        line = refused(run("simulate", "saddle", "-o", tmp_path / f"a.{ending}"))
+        assert "pip install 'simulearn[vtk]'" in line
+    assert not solved
+
+
+def test_an_unknown_engine_is_refused(run, tmp_path):
+    line = refused(run("simulate", "saddle", "--engine", "crystal-ball", "-o", tmp_path / "a.json"))
+    assert 'engine "crystal-ball" is not known; known are fea, calculix' in line
+
+
+# Failures on the way: the old file stays, and nothing else
+
+
+@pytest.mark.usefixtures("solved")
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_a_full_disk_leaves_what_was_there(run, tmp_path, monkeypatch, ending):
+    path = tmp_path / f"a.{ending}"
+    path.write_text("before")
+
+    def full(self, target):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    assert "cannot be written (No space left on device)" in refused(
+        run("simulate", "saddle", "-o", path)
+    )
+    assert path.read_text() == "before"
+    assert written(tmp_path) == [path.name]
+
+
+def test_a_failed_computation_has_its_own_code(run, failing, tmp_path):
+    failing(ComputationError("frame 3 of 11: no equilibrium at 27 %"))
+    line = refused(run("simulate", "saddle", "-o", tmp_path / "a.json"), code=3)
+    assert "frame 3 of 11: no equilibrium at 27 %" in line
+    assert written(tmp_path) == []
+
+
+def test_an_interrupt_says_so(run, failing, tmp_path):
+    failing(KeyboardInterrupt())
+    line = refused(run("simulate", "saddle", "-o", tmp_path / "a.json"), code=130)
+    assert "interrupted" in line
+    assert written(tmp_path) == []
+
+
+def test_the_unexpected_is_one_line_too_unless_debugging(run, failing, monkeypatch):
+    failing(ZeroDivisionError("[division] by zero\nin two lines"))
+    line = refused(run("simulate", "saddle"), code=3)
+    assert "ZeroDivisionError: [division] by zero in two lines" in line
+    assert "SIMULEARN_DEBUG=1" in line
+    monkeypatch.setenv("SIMULEARN_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        run("simulate", "saddle")
+
+
+@pytest.mark.parametrize(
+    "words", [["simulat"], ["simulate"], ["simulate", "saddle", "--fast"], ["library", "--length"]]
+)
+def test_wrong_usage_is_code_2(run, words):
+    line = refused(run(*words), code=2)
+    assert "--help" in line
+
+
+def test_version_and_help(run):
+    assert run("--version") == (0, f"simulearn {__version__}\n", "")
+    code, out, err = run("--help")
+    assert (code, err) == (0, "")
+    assert all(command in out for command in ("simulate", "validate", "library"))
+
+
+# As its own process
+
+
+def simulearn(*words, **more):
+    return subprocess.run(
+        [sys.executable, *words], capture_output=True, text=True, check=False, timeout=300, **more
+    )
+
+
+@pytest.mark.parametrize("words", [["--help"], ["validate", "saddle"], ["library"]])
+def test_quick_commands_load_no_solver(words):
+    done = simulearn("-X", "importtime", "-m", "simulearn.cli", *words)
+    assert done.returncode == 0
+    loaded = {line.rsplit("|", 1)[-1].strip() for line in done.stderr.splitlines()}
+    assert "simulearn.cli" in loaded | {"simulearn.cli"}
+    assert loaded.isdisjoint({"jax", "skfem", "scipy.sparse", "matplotlib", "trimesh", "meshio"})
+
+
+def test_a_saddle_by_finite_elements(tmp_path):
+    path = tmp_path / "saddle.npz"
+    done = simulearn("-m", "simulearn.cli", "simulate", "saddle", "--json", "-o", path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["engine"] == "fea"
+    result = read_npz(path)
+    assert {f.name for f in dataclasses.fields(result) if getattr(result, f.name) is None} == set()
+    middle = result.centres[:, result.grid.fixed]
+    np.testing.assert_allclose(middle[0], 0, atol=1e-9)
+    # The saddle is symmetric under half a turn about its middle.
+    last = result.centres[-1]
+    np.testing.assert_allclose(last[::-1] * [-1, -1, 1], last, atol=1e-6)
