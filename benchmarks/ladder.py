@@ -89,25 +89,28 @@ def end_moment(turns: float = 0.5, layout: Layout = Layout(slabs=24)) -> Array:
     solid = cantilever(material, length, layout)
     end = tip(solid)
     top, low = (end[solid.nodes[end, 2] * sign > 0.04] for sign in (1, -1))
-    # A jump of a dead load takes many iterations: nothing is known of the way.
-    patient = Control(iterations=60)
-    problem = Equilibrium(solid, law_of(material.law), 0.0, control=patient)
-    state, errors = problem.flat(), []
-    steps = round(turns * 48)
-    for step in range(1, steps + 1):
-        moment = 2 * np.pi * stiffness / length * step / 48
-        for _ in range(8):
-            at = solid.nodes + state.u
-            up = at[top].mean(axis=0) - at[low].mean(axis=0)
-            angle = np.arctan2(-up[0], up[2])
+    problem = Equilibrium(solid, law_of(material.law), 0.0)
+    # The load of step k is k times what `problem.load` holds, so that steps can be extrapolated.
+    path, angles, errors = [problem.flat()], [0.0], []
+    for step in range(1, round(turns * 24) + 1):
+        moment = 2 * np.pi * stiffness / length * step / 24
+        angle = 2 * angles[-1] - angles[-2] if step > 1 else 2 * np.pi / 24
+        thick, past = 0.1, path
+        for _ in range(10):
             along = np.array([np.cos(angle), 0, np.sin(angle)])
-            problem.load[:] = 0
-            problem.load[low] = moment / np.linalg.norm(up) * along / len(low)
-            problem.load[top] = -moment / np.linalg.norm(up) * along / len(top)
-            before = state
-            state = problem.advance([state], 0.0, 1.0)[-1]
-            if abs(state.u - before.u).max() < 1e-6:
+            problem.load[low] = moment / thick * along / len(low) / step
+            problem.load[top] = -moment / thick * along / len(top) / step
+            state = problem.advance(past, 0.0, float(step))[-1]
+            past = [state]
+            up = (solid.nodes + state.u)[top].mean(axis=0) - (solid.nodes + state.u)[low].mean(
+                axis=0
+            )
+            before, angle = angle, float(np.arctan2(-up[0], up[2])) % (2 * np.pi)
+            thick = float(np.linalg.norm(up))
+            if abs(angle - before) < 1e-7:
                 break
+        path.append(state)
+        angles.append(angle)
         radius = stiffness / moment
         exact = np.array(
             [radius * np.sin(length / radius) - length, radius * (1 - np.cos(length / radius))]

@@ -110,10 +110,7 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     where[: len(in_joints[1]), 1] = where[: len(in_joints[1]), 0]
     where[: len(in_joints[1]), 0] = -1
 
-    points, weights = _rule(section, layout)
-    gauss = _product(GAUSS, GAUSS, GAUSS)[0]
-    # So that all bricks have equally many, a joint's eight points are counted more than once.
-    repeat = len(weights) // gauss.shape[1]
+    (points, weights), (joint_points, joint_weights) = _rules(section, layout)
     basis = Basis(
         MeshHex(
             np.ascontiguousarray(places.T),
@@ -158,8 +155,8 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
         slabs=layout.slabs,
         points=points,
         weights=weights,
-        joint_points=np.tile(gauss, repeat),
-        joint_weights=np.full(len(weights), 1 / len(weights)),
+        joint_points=joint_points,
+        joint_weights=joint_weights,
         angle=angle,
         growth=growth,
         stress=stress,
@@ -199,28 +196,38 @@ def _cells(vertices: Indices) -> tuple[Indices, Indices]:
     return vertices[k, x, y, z], where
 
 
-def _rule(section: Section, layout: Layout) -> tuple[Array, Array]:
-    """Return the integration points (3, Q) of a brick and their weights (Q,), adding to one.
+def _rules(section: Section, layout: Layout) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """Return the rules of beams and joints: points (3, Q) of a brick, weights (Q,) adding to one.
 
-    Two Gauss points each way: the reduced rule of a 20-node brick. A brick that spans the whole
-    section has four across, one amid each shell and two in the core, set so that the rule is
-    still exact to third degree.
+    Bricks that share a section have two Gauss points each way, the reduced rule of a 20-node
+    brick. One that spans it all has four across, one amid each shell and two in the core, set so
+    that the rule is still exact to third degree. Alone in a joint, the reduced rule would leave
+    soft modes, and four points one way would tell x from y: there it is the eight points of fifth
+    degree in the plane (Stroud 1971, C2: 5-2), which a quarter turn does not change.
     """
-    across = GAUSS
-    shell = section.shell / section.width
-    if layout.core == 0 and shell:
-        outer = (1 - shell) / 2
-        inner = np.sqrt((1 / 12 - 2 * shell * outer**2) / (1 - 2 * shell))
-        if not inner < 0.5 - shell:
-            raise InputError(
-                f"shells of {section.shell} mm are too wide for one brick across "
-                f"{section.width} mm; use a layout with core = 1"
-            )
-        across = (
-            0.5 + np.array([-outer, -inner, inner, outer]),
-            np.array([shell, 0.5 - shell, 0.5 - shell, shell]),
+    if layout.core:
+        reduced = _product(GAUSS, GAUSS, GAUSS)
+        return reduced, reduced
+    shell = section.shell / section.width or 1 / 8
+    outer = (1 - shell) / 2
+    inner = np.sqrt((1 / 12 - 2 * shell * outer**2) / (1 - 2 * shell))
+    if not inner < 0.5 - shell:
+        raise InputError(
+            f"shells of {section.shell} mm are too wide for one brick across "
+            f"{section.width} mm; use a layout with core = 1"
         )
-    return _product(GAUSS, across, GAUSS)
+    across = (
+        0.5 + np.array([-outer, -inner, inner, outer]),
+        np.array([shell, 0.5 - shell, 0.5 - shell, shell]),
+    )
+    a, b = np.sqrt([7 / 15, 7 / 9]) / 2
+    plane = np.array([[a, 0], [0, a], [-a, 0], [0, -a], [b, b], [-b, b], [-b, -b], [b, -b]])
+    share = np.repeat([10 / 49, 9 / 196], 4)
+    joint = (
+        np.concatenate([np.tile(0.5 + plane.T, 2), [np.repeat(GAUSS[0], 8)]]),
+        np.tile(share, 2) / 2,
+    )
+    return _product(GAUSS, across, GAUSS), joint
 
 
 def _product(*axes: tuple[Array, Array]) -> tuple[Array, Array]:

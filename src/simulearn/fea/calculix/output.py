@@ -62,11 +62,14 @@ def _blocks(path: Path) -> Iterator[tuple[str, list[str]]]:
 
 
 def read_sta(path: Path) -> list[tuple[int, int, int]]:
-    """Return (step, increment, iterations) of every increment that converged so far."""
+    """Return (step, increment, iterations) of every increment that converged so far.
+
+    An attempt that did not is marked by a letter after its number.
+    """
     if not path.exists():
         return []
     rows = (line.split() for line in path.read_text(encoding="ascii").splitlines()[2:])
-    return [(int(r[0]), int(r[1]), int(r[3])) for r in rows if len(r) == 7 and r[1].isdigit()]
+    return [(int(r[0]), int(r[1]), int(r[3])) for r in rows if len(r) == 7 and r[2].isdigit()]
 
 
 def last_error(log: str) -> str:
