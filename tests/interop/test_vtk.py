@@ -1,0 +1,121 @@
+"""VTK files: bricks that fill the grid, displacements that lead back to it, a series that plays."""
+
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pytest
+
+import synthetic
+from simulearn.errors import InputError
+from simulearn.interop import write_pvd, write_vtu
+
+RESULT = synthetic.result()
+PLAIN = synthetic.result(solid=False)
+VOLUME = 4.0 * 7.2 * (9 * 7.2 + 12 * (65 - 7.2))  # joints and beams of the flat grid, mm3
+
+# VTK's order: corners, then the middles of the edges below, above and between.
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+CORNERS = np.concatenate([CORNERS, CORNERS + np.array([0, 0, 1])])
+EDGES = np.array([*zip(range(4), (1, 2, 3, 0), strict=True)])
+EDGES = np.concatenate([EDGES, EDGES + 4, np.stack([np.arange(4), np.arange(4, 8)], axis=1)])
+NODES = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1)])
+
+
+def volume(points, bricks):
+    """Volume of bricks of 8 or 20 nodes whose shape functions are 1 at their own node."""
+    n = bricks.shape[1]
+    powers = np.array([p for p in np.ndindex(3, 3, 3) if sum(k for k in p if k > 1) <= 2])
+    powers = powers[powers.max(axis=1) < 2] if n == 8 else powers
+    monomials = lambda x: np.prod(x[:, None] ** powers, axis=2)  # noqa: E731
+    inverse = np.linalg.inv(monomials(NODES[:n]))
+    x, w = np.polynomial.legendre.leggauss(4)
+    at = np.stack(np.meshgrid(*[(x + 1) / 2] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    weight = np.prod(np.stack(np.meshgrid(*[w / 2] * 3, indexing="ij"), axis=-1), axis=-1).ravel()
+    step = 1e-6
+    slopes = [
+        (monomials(at + step * e) - monomials(at - step * e)) / (2 * step) @ inverse
+        for e in np.eye(3)
+    ]
+    jacobian = np.einsum("dqn,enx->eqdx", slopes, points[bricks])
+    return np.linalg.det(jacobian) @ weight
+
+
+def read(tmp_path, result, frame=-1):
+    path = tmp_path / "a.vtu"
+    write_vtu(result, path, frame)
+    mesh = meshio.read(path)
+    (cells,) = mesh.cells
+    return mesh, cells
+
+
+def test_bricks_of_twenty_nodes_have_each_middle_between_its_corners(tmp_path):
+    mesh, cells = read(tmp_path, RESULT, frame=0)
+    assert cells.type == "hexahedron20"
+    at = mesh.points[cells.data]
+    np.testing.assert_allclose(at[:, 8:], at[:, EDGES].mean(axis=2), atol=1e-9)
+
+
+@pytest.mark.parametrize("solid", [True, False])
+def test_bricks_fill_the_grid(tmp_path, solid):
+    result = synthetic.result(bend=synthetic.cylinder, solid=solid)
+    for frame in (0, -1):
+        mesh, cells = read(tmp_path, result, frame)
+        filled = volume(mesh.points, cells.data)
+        assert (filled > 0).all()
+        # Rolling keeps the volume but for what straight edges cut off.
+        assert filled.sum() == pytest.approx(VOLUME, rel=1e-6 if frame == 0 else 0.03)
+
+
+@pytest.mark.parametrize("result", [RESULT, PLAIN])
+def test_displacements_lead_back_to_the_flat_grid(tmp_path, result):
+    flat, _ = read(tmp_path, result, frame=0)
+    mesh, _ = read(tmp_path, result)
+    back = mesh.points - mesh.point_data["displacement"]
+    np.testing.assert_allclose(back, flat.points, atol=1e-9)
+    assert abs(flat.points[:, 2]).max() == pytest.approx(2.0)
+
+
+def test_corners_of_the_result_are_points(tmp_path):
+    for result in (RESULT, PLAIN):
+        mesh, _ = read(tmp_path, result)
+        corners = np.concatenate(
+            [result.joints[-1].reshape(-1, 3), result.beams[-1].reshape(-1, 3)]
+        )
+        away = np.linalg.norm(corners[:, None] - mesh.points, axis=2).min(axis=1)
+        assert away.max() < 1e-9
+
+
+def test_a_series_names_a_file_for_each_frame(tmp_path):
+    path = tmp_path / "my 'grid' & <co>.pvd"
+    write_pvd(RESULT, path)
+    sets = ElementTree.parse(path).getroot().findall("Collection/DataSet")
+    assert [s.get("timestep") for s in sets] == [str(k) for k in range(12)]
+    for s, u in zip(sets, RESULT.displacements, strict=True):
+        mesh = meshio.read(tmp_path / s.get("file"))
+        np.testing.assert_allclose(mesh.point_data["displacement"], u, atol=1e-9)
+    assert len([*tmp_path.iterdir()]) == 2
+
+
+def test_a_series_that_fails_midway_leaves_the_old_one(tmp_path, monkeypatch):
+    path = tmp_path / "a.pvd"
+    write_pvd(RESULT, path)
+    before = {file: file.read_bytes() for file in tmp_path.rglob("*.*")}
+    written = []
+
+    def third(mesh, *args, **more):
+        written.append(mesh)
+        if len(written) == 3:
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(meshio.Mesh, "write", third)
+    with pytest.raises(InputError, match="No space left"):
+        write_pvd(PLAIN, path)
+    assert {file: file.read_bytes() for file in tmp_path.rglob("*.*")} == before
+
+
+def test_a_file_in_the_place_of_the_folder_is_named(tmp_path):
+    (tmp_path / "a_frames").write_text("mine")
+    with pytest.raises(InputError, match="a_frames, which is a file"):
+        write_pvd(PLAIN, tmp_path / "a.pvd")
+    assert (tmp_path / "a_frames").read_text() == "mine"
