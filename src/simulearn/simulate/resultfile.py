@@ -133,7 +133,8 @@ def read_npz(path: Path | str) -> Result:
         InputError: the file is missing or not a result.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # Opened here, since NumPy leaves a broken file open.
+        with Path(path).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {key: file[key] for key in file.files}
     except FileNotFoundError as error:
         raise InputError(f"{path}: there is no such file") from error
