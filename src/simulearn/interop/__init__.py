@@ -1,6 +1,5 @@
-"""Files of other programs: surfaces (GLB, STL) and solids (VTK)."""
+"""Results for other programs, by the ending of a file's name."""
 
-from simulearn.interop.surface import write_surface
-from simulearn.interop.vtk import write_pvd, write_vtu
+from simulearn.interop.formats import FORMATS, check_outputs, format_of, write
 
-__all__ = ["write_pvd", "write_surface", "write_vtu"]
+__all__ = ["FORMATS", "check_outputs", "format_of", "write"]
