@@ -6,7 +6,7 @@ BIN := .venv/bin
 ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	XLA_FLAGS="--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench pictures clean
 
 demo: .venv/ready
 	mkdir -p out
@@ -27,6 +27,12 @@ bench: .venv/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/against_calculix.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/speed.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/designs.py
+
+# The pictures of README.md.
+pictures: .venv/ready
+	mkdir -p docs/pictures
+	$(BIN)/simulearn simulate examples/saddle.json -o docs/pictures/saddle.gif
+	$(BIN)/simulearn simulate examples/random.json -o docs/pictures/random.png
 
 clean:
 	rm -rf .venv out
