@@ -1,5 +1,6 @@
-"""Results for other programs, by the ending of a file's name."""
+"""Files of other programs: surfaces (GLB, STL) and solids (VTK)."""
 
-from simulearn.interop.formats import FORMATS, check_outputs, format_of, write
+from simulearn.interop.surface import write_surface
+from simulearn.interop.vtk import write_pvd, write_vtu
 
-__all__ = ["FORMATS", "check_outputs", "format_of", "write"]
+__all__ = ["write_pvd", "write_surface", "write_vtu"]

@@ -67,8 +67,8 @@ def _checked(grid: Grid) -> tuple[Grid, Material]:
     material = load_material(grid.material)
     errors = validate(grid, material).errors
     if errors:
-        more = f" ({len(errors) - 1} more: see `simulearn validate`)" if len(errors) > 1 else ""
-        raise InputError(errors[0].message + more)
+        more = f" (and {len(errors) - 1} more; `simulearn validate` shows all)"
+        raise InputError(errors[0].message + (more if len(errors) > 1 else ""))
     return clean(grid)[0].centred, material
 
 
