@@ -58,7 +58,7 @@ def solve(
     counts = [0] * len(steps)
     for step, _, iterations in read_sta(ccx.path("sta")):
         counts[step - 1] += iterations
-    return [State(*values, runs=1) for values in zip(moves, stresses, counts, strict=True)]
+    return [State(*values, runs=0) for values in zip(moves, stresses, counts, strict=True)]
 
 
 def _material(

@@ -33,7 +33,7 @@ class CalculixFrames:
         displacements: (12, N, 3) mm; frame 0 is zero.
         stress: (12, E, Q, 6) Cauchy stress at the solid's integration points, MPa, global axes,
             order 11 22 33 12 13 23; frame 0 is zero, frame 11 that of the unmultiplied gravity.
-        record: `law`, `program`, `seconds`, and of each frame `iterations` and `runs` of ccx.
+        record: `law`, `program`, `seconds`, `iterations` of each frame, `runs` of ccx.
     """
 
     displacements: NDArray[np.float64]
@@ -86,7 +86,7 @@ def calculix(
         "program": program.program,
         "seconds": time.monotonic() - begin,
         "iterations": _per_frame(steps, [state.iterations for state in states]),
-        "runs": _per_frame(steps, [state.runs for state in states]),
+        "runs": max(1, sum(state.runs for state in states)),
     }
     return CalculixFrames(
         np.stack([np.zeros_like(moves[0]), *moves]),

@@ -19,7 +19,7 @@ class State:
         displacements: (N, 3) mm.
         stress: (E, 8, 6) Cauchy stress at CalculiX's points, MPa, global axes.
         iterations: spent on this step.
-        runs: of CalculiX spent on this step.
+        runs: of CalculiX spent on this step; 0 where one run computes all steps.
     """
 
     displacements: NDArray[np.float64]
