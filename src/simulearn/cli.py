@@ -86,6 +86,8 @@ def simulate(
         result = answering.simulate([design], progress)[0]
     if "note" in result.record:
         err.print(f"[yellow]note:[/] {escape(result.record['note'])}")
+    if not result.record.get("stable", True):
+        err.print("[yellow]note:[/] the shape is in unstable balance and may snap into another")
     for path in files:
         outputs.write(result, path)
     if as_json:
@@ -216,30 +218,27 @@ def _table(result: "Result") -> Table:
     from simulearn.simulate import summary
 
     numbers: dict[str, Any] = summary(result)
+    fall = "rise" if numbers["rise_mm"] > 0 else "fall"
+    work = f", {numbers['iterations']} iterations" if "iterations" in numbers else ""
     table = Table(
-        "joint",
-        "flat x, y",
-        "morphed x, y, z",
-        "moved",
         box=None,
         title=(
             f"{len(result.grid.joints)} joints, {len(result.grid.beams)} beams, "
-            f"dimension {numbers['dimension_mm']:.1f} mm: z from {numbers['lowest_mm']:.1f} to "
-            f"{numbers['highest_mm']:.1f} mm"
+            f"dimension {numbers['dimension_mm']:.1f} mm\n"
+            f"largest {fall} {abs(numbers['rise_mm']):.1f} mm (joint {numbers['joint_risen']}), "
+            f"z from {numbers['lowest_mm']:.1f} to {numbers['highest_mm']:.1f} mm"
         ),
-        caption=f"{result.engine}, {result.seconds:.1f} s; millimetres, +z up",
+        caption=f"{result.engine}, {result.seconds:.1f} s{work}; millimetres, +z up",
         title_justify="left",
         caption_justify="left",
     )
+    for name in ("joint", "flat x", "y", "morphed x", "y", "z", "moved"):
+        table.add_column(name, justify="right")
     for k, (a, b) in enumerate(zip(result.centres[0], result.centres[-1], strict=True)):
-        moved = float(((b - a) ** 2).sum() ** 0.5)
-        name = f"{k} fixed" if k == result.grid.fixed else str(k)
-        table.add_row(
-            name,
-            f"{a[0]:8.1f} {a[1]:8.1f}",
-            f"{b[0]:8.1f} {b[1]:8.1f} {b[2]:8.1f}",
-            f"{moved:6.1f}",
-        )
+        places = [*a[:2], *b, float(((b - a) ** 2).sum() ** 0.5)]
+        # + 0.0 turns -0.0 into 0.0
+        words = [f"{round(x, 1) + 0.0:.1f}" for x in places]
+        table.add_row(f"fixed {k}" if k == result.grid.fixed else str(k), *words)
     return table
 
 

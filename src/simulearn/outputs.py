@@ -9,21 +9,24 @@ from pathlib import Path
 from tempfile import TemporaryFile
 
 from simulearn.errors import InputError
+from simulearn.files import replacing
 from simulearn.simulate import Result, write_json, write_npz
 
 Writer = Callable[[Result, Path], None]
 
 
-def _png(result: Result, path: Path) -> None:
-    from simulearn.show import save_figure
+def _figure(result: Result, path: Path) -> None:
+    from simulearn.show import combined
 
-    save_figure(result, path)
+    picture = combined(result)
+    with replacing(path) as temporary:
+        picture.savefig(temporary)
 
 
-def _gif(result: Result, path: Path) -> None:
-    from simulearn.show import save_animation
+def _animation(result: Result, path: Path) -> None:
+    from simulearn.show import animate
 
-    save_animation(result, path)
+    animate(result, path)
 
 
 def _surface(result: Result, path: Path) -> None:
@@ -47,8 +50,10 @@ def _pvd(result: Result, path: Path) -> None:
 WRITERS: dict[str, Writer] = {
     ".json": write_json,
     ".npz": write_npz,
-    ".png": _png,
-    ".gif": _gif,
+    ".png": _figure,
+    ".pdf": _figure,
+    ".svg": _figure,
+    ".gif": _animation,
     ".glb": _surface,
     ".stl": _surface,
     ".vtu": _vtu,

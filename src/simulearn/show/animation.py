@@ -1,9 +1,10 @@
-"""The grid morphing: its frames, with others in between, seen by a camera that stands still."""
+"""The grid morphing, as an animated GIF: a fixed view of all frames, still at both ends."""
 
-import io
 from pathlib import Path
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
@@ -11,75 +12,82 @@ from PIL import Image
 from simulearn.files import replacing
 from simulearn.show import style
 from simulearn.show.camera import Camera
-from simulearn.show.deformed import draw_ghost, draw_skin, extent
-from simulearn.simulate import Result, skin
-
-Array = NDArray[np.float64]
+from simulearn.show.deformed import SPACING, draw_ghost, draw_skin, draw_triad, extent
+from simulearn.simulate import FRAMES, Result, skin
 
 BETWEEN = 3  # pictures from one frame to the next
-WAIT = 700  # ms on the first and on the last picture
-STEP = 60  # ms on each other
+PICTURE, PAUSE = 60, 1400  # ms
+COLOURS = 192
 
 
-def save_animation(
-    result: Result, path: Path | str, camera: Camera = Camera(), pixels: int = 560
+def animate(
+    result: Result, path: Path | str, camera: Camera = Camera(), width: float = 5.2, dpi: int = 120
 ) -> None:
-    """Write the frames as an animated GIF.
+    """Write the animation of a result.
 
     Args:
         result: what to show.
-        path: the file.
+        path: of the GIF.
         camera: where the viewer is.
-        pixels: width of the picture.
-
-    Raises:
-        InputError: the file cannot be written.
+        width: of the pictures, inches.
+        dpi: their pixels per inch.
     """
-    surface = skin(result)
-    frames = len(surface.vertices)
-    low, high = extent(surface, camera, list(range(frames)))
-    span, margin = high - low, 0.06 * float(max(high - low))
-    width, caption = 5.0, 0.3
-    height = width * (span[1] + 2 * margin) / (span[0] + 2 * margin) + caption
-    pictures = []
-    times = np.linspace(0, frames - 1, BETWEEN * (frames - 1) + 1)
-    with style.paper():
-        for time in times:
-            k = min(int(time), frames - 2)
-            vertices = surface.vertices[k] + (time - k) * (
-                surface.vertices[k + 1] - surface.vertices[k]
-            )
-            fig = Figure(figsize=(width, height), dpi=pixels / width)
-            ax = fig.add_axes((0, caption / height, 1, 1 - caption / height))
-            draw_ghost(ax, surface, camera)
-            draw_skin(ax, vertices, surface, result.grid.fixed, camera)
-            style.bare(ax, low, high, margin)
-            fig.text(0.5, 0.1 / height, _caption(time, frames), ha="center", fontsize=8)
-            pictures.append(_picture(fig))
-    # One palette for all, so that colours do not flicker.
-    palette = pictures[-1].quantize(128)
-    quantized = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures]
-    durations = [STEP] * len(quantized)
-    durations[0] = durations[-1] = WAIT
+    pictures = [Image.fromarray(pixels) for pixels in _pictures(result, camera, width, dpi)]
+    # One palette for all, or colours would flicker.
+    palette = _palette(pictures[-1])
+    frames = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures]
+    durations = [PAUSE, *[PICTURE] * (len(frames) - 2), PAUSE]
     with replacing(path) as temporary:
-        quantized[0].save(
+        frames[0].save(
             temporary,
+            format="GIF",
             save_all=True,
-            append_images=quantized[1:],
+            append_images=frames[1:],
             duration=durations,
             loop=0,
-            optimize=True,
+            optimize=False,
         )
 
 
-def _caption(time: float, frames: int) -> str:
-    released = 100 * min(time / (frames - 2), 1.0)
-    if time == 0:
-        return "flat"
-    return f"{released:.0f} % of the stress released" if time <= frames - 2 else "creep"
+def _pictures(result: Result, camera: Camera, width: float, dpi: int) -> list[NDArray[np.uint8]]:
+    """Return the pictures, (h, w, 3) each."""
+    surface = skin(result, SPACING)
+    with style.paper():
+        fig = Figure(figsize=(width, width), dpi=dpi)
+        canvas = FigureCanvasAgg(fig)
+        low, high = extent(surface, camera, list(range(FRAMES)))
+        ax, inch = style.footed(fig, low, high)
+        draw_ghost(ax, surface, camera)
+        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.1 * inch, 0.2 * inch, camera)
+        words = style.words(fig, "")
+        style.legend(fig)
+        pictures = []
+        for moment in np.linspace(0, FRAMES - 1, BETWEEN * (FRAMES - 1) + 1):
+            before = min(int(moment), FRAMES - 2)
+            share = moment - before
+            now = (1 - share) * surface.vertices[before] + share * surface.vertices[before + 1]
+            drawn = draw_skin(ax, now, surface, result.grid.fixed, camera)
+            words.set_text(_stage(float(moment)))
+            canvas.draw()
+            pictures.append(np.array(canvas.buffer_rgba())[..., :3])
+            drawn.remove()
+    return pictures
 
 
-def _picture(fig: Figure) -> Image.Image:
-    buffer = io.BytesIO()
-    fig.savefig(buffer, format="png", facecolor="white")
-    return Image.open(buffer).convert("RGB")
+def _palette(picture: Image.Image) -> Image.Image:
+    """Return a palette for all pictures: the legend's colours exactly, then a picture's own."""
+    tints = style.tint([-1, -0.75, -0.5, -0.25, 0, 0.25, 0.5, 0.75, 1])
+    others = [to_rgb(c) for c in ("white", style.INK, style.JOINT, style.FIXED, style.GHOST)]
+    exact = np.round(255 * np.concatenate([tints, others])).astype(int)
+    own = np.array(picture.quantize(COLOURS - len(exact)).getpalette()).reshape(-1, 3)
+    own = own[own.min(axis=1) < 246]  # a second white would turn paper grey
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(np.concatenate([exact, own]).ravel().tolist())
+    return palette
+
+
+def _stage(moment: float) -> str:
+    """Return what happens at a moment, counted in frames."""
+    if moment <= FRAMES - 2:
+        return f"residual stress released: {100 * moment / (FRAMES - 2):.0f} %"
+    return "creep under gravity"

@@ -18,7 +18,7 @@ class Camera:
     """
 
     azimuth: float = -62.0
-    elevation: float = 24.0
+    elevation: float = 27.0
 
     @property
     def axes(self) -> Array:

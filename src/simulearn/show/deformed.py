@@ -18,7 +18,17 @@ from simulearn.show.camera import Camera
 from simulearn.simulate import Result, Skin, skin, summary
 
 Array = NDArray[np.float64]
-EDGE_LIFT = 1.2  # mm by which an edge stands before its face, so that it is not painted over
+SPACING = 2.0  # mm, length of the quadrilaterals along a beam
+# An edge stands this far (mm) before its face, so that the next faces do not paint over half of it.
+LIFT = 1.3 * SPACING
+
+
+def draw_deformed(
+    ax: Axes, result: Result, surface: Skin, frame: int = -1, camera: Camera = Camera()
+) -> None:
+    """Draw a frame of a result over the ghost of the flat grid."""
+    draw_ghost(ax, surface, camera)
+    draw_skin(ax, surface.vertices[frame], surface, result.grid.fixed, camera)
 
 
 def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
@@ -34,8 +44,10 @@ def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
     draw(PolyCollection(list(lines), closed=False, zorder=1.1, **line))
 
 
-def draw_skin(ax: Axes, vertices: Array, surface: Skin, fixed: int, camera: Camera) -> None:
-    """Draw a skin with its vertices (V, 3) where they are now."""
+def draw_skin(
+    ax: Axes, vertices: Array, surface: Skin, fixed: int, camera: Camera
+) -> PolyCollection:
+    """Draw a skin with its vertices (V, 3) where they are now, and return what was drawn."""
     corners = vertices[surface.quads]
     normals = _normals(corners)
     front = normals @ camera.axes[2] > 0
@@ -44,29 +56,28 @@ def draw_skin(ax: Axes, vertices: Array, surface: Skin, fixed: int, camera: Came
     rgb = rgb * camera.light(normals)[:, None]
     seen = camera.see(corners)
 
-    sharp = surface.sharp[front]
+    sharp = _outlined(surface, front)[front]
     lines = _sharp_edges(seen, sharp)
+    depth = seen[..., 2].mean(axis=1)
+    above = np.maximum(lines[..., 2].mean(axis=1), depth[np.nonzero(sharp)[0]]) + LIFT
     ink = np.array(to_rgb(style.INK))
     shapes = [*seen[..., :2], *lines[..., :2]]
-    order = np.argsort(
-        np.concatenate([seen[..., 2].mean(axis=1), lines[..., 2].mean(axis=1) + EDGE_LIFT])
-    )
+    order = np.argsort(np.concatenate([depth, above]))
     faces = np.concatenate([np.c_[rgb, np.ones(len(rgb))], np.zeros((len(lines), 4))])
     # A face's own colour around it closes the hairlines between neighbours.
     rims = np.concatenate([rgb, np.tile(ink, (len(lines), 1))])
     widths = np.repeat([0.35, 0.55], [len(rgb), len(lines)])
-    draw: Any = ax.add_collection
-    draw(
-        PolyCollection(
-            [shapes[k] for k in order],
-            facecolors=faces[order],
-            edgecolors=rims[order],
-            linewidths=widths[order],
-            joinstyle="round",
-            capstyle="round",
-            zorder=2,
-        )
+    drawn = PolyCollection(
+        [shapes[k] for k in order],
+        facecolors=faces[order],
+        edgecolors=rims[order],
+        linewidths=widths[order],
+        joinstyle="round",
+        capstyle="round",
+        zorder=2,
     )
+    ax.add_collection(drawn, autolim=False)
+    return drawn
 
 
 def extent(surface: Skin, camera: Camera, frames: list[int]) -> tuple[Array, Array]:
@@ -107,10 +118,12 @@ def draw_triad(ax: Axes, x: float, y: float, length: float, camera: Camera) -> N
 def dimensions(result: Result) -> str:
     """Return the words beneath a deformed picture."""
     numbers = summary(result)
-    return (
-        f"dimension {numbers['dimension_mm']:.0f} mm, rise {numbers['rise_mm']:+.1f} mm, "
-        f"z from {numbers['lowest_mm']:.1f} to {numbers['highest_mm']:.1f} mm"
+    low, high = numbers["lowest_mm"], numbers["highest_mm"]
+    text = (
+        f"dimension {numbers['dimension_mm']:.0f} mm, height {high - low:.1f} mm "
+        f"(z {low:+.1f} to {high:+.1f} mm)"
     )
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def deformed(
@@ -125,27 +138,31 @@ def deformed(
         width: of the figure, inches.
     """
     with style.paper():
-        surface = skin(result)
+        surface = skin(result, SPACING)
         low, high = extent(surface, camera, [0, frame])
-        span = high - low
-        margin, foot = 0.05 * float(max(span)), 0.62
-        height = width * (span[1] + 2 * margin) / (span[0] + 2 * margin) + foot
-        fig = Figure(figsize=(width, height), dpi=style.DPI)
-        ax = fig.add_axes((0, foot / height, 1, 1 - foot / height))
-        draw_ghost(ax, surface, camera)
-        draw_skin(ax, surface.vertices[frame], surface, result.grid.fixed, camera)
-        style.bare(ax, low, high, margin)
-        inch = (span[0] + 2 * margin) / width  # mm
-        style.scale_bar(ax, low[0], low[1] - margin - 0.14 * inch, style.nice_length(span[0]))
-        draw_triad(ax, high[0] - 0.3 * inch, low[1] - margin + 0.05 * inch, 0.24 * inch, camera)
-        fig.text(0.5, 0.4 / height, dimensions(result), ha="center", fontsize=7)
-        style.legend(fig, (width - style.LEGEND_WIDTH) / 2 + 0.1, 0.14)
+        fig = Figure(figsize=(width, width), dpi=style.DPI)
+        ax, inch = style.footed(fig, low, high)
+        draw_deformed(ax, result, surface, frame, camera)
+        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
+        style.words(fig, dimensions(result))
+        style.legend(fig)
     return fig
+
+
+def _outlined(surface: Skin, front: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return which edges (Q, 4) are drawn: the sharp ones, and where a strip turns away."""
+    sharp = surface.sharp.copy()
+    first, second = surface.quads[:-1], surface.quads[1:]
+    turns = (first[:, 3] == second[:, 0]) & (front[:-1] != front[1:])
+    sharp[:-1, 2] |= turns
+    sharp[1:, 0] |= turns
+    return sharp
 
 
 def _normals(corners: Array) -> Array:
     normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    # A face of no area has no normal, and is not drawn.
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
 
 
 def _sharp_edges(corners: Array, sharp: NDArray[np.bool_]) -> Array:

@@ -8,27 +8,27 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from simulearn.grid import Grid, outline
+from simulearn.grid import Grid, Outline, outline
 from simulearn.material import load_material
 from simulearn.show import style
 
 Array = NDArray[np.float64]
 
 
-def draw_flat(ax: Axes, grid: Grid, numbers: bool = True) -> tuple[Array, Array]:
+def draw_flat(
+    ax: Axes, grid: Grid, numbers: bool = True, at: tuple[float, float] = (0.0, 0.0)
+) -> None:
     """Draw a grid from above.
 
     Args:
         ax: where to draw, in mm.
         grid: the design.
         numbers: whether joints and beams carry their numbers.
-
-    Returns:
-        The lower left and the upper right corner (2,) of what was drawn, mm.
+        at: where its fixed joint comes to lie, mm.
     """
     grid = grid.centred
-    shape = outline(grid, load_material(grid.material).section)
-    ends = shape.beams  # (B, [start, end], [right, left], 2)
+    shape = _outline(grid)
+    ends = shape.beams + np.array(at)  # (B, [start, end], [right, left], 2)
 
     def across(t: Array) -> Array:
         """Return the right and left points of the beams at t (B,): (B, 2, 2)."""
@@ -47,21 +47,39 @@ def draw_flat(ax: Axes, grid: Grid, numbers: bool = True) -> tuple[Array, Array]
     a, b = (1 - np.abs(ratio)) / 2, (1 + np.abs(ratio)) / 2
     draw(PolyCollection(list(between(a, b)[active]), facecolors=style.tint(ratio[active]), **edge))
     faces = [style.FIXED if j == grid.fixed else style.JOINT for j in range(len(grid.joints))]
-    draw(PolyCollection(list(shape.joints), facecolors=faces, **edge))
+    draw(PolyCollection(list(shape.joints + np.array(at)), facecolors=faces, **edge))
     if numbers:
-        _numbers(ax, grid, across(none + 0.5).mean(axis=1))
-    corners = shape.joints.reshape(-1, 2)
+        joints = shape.joints.mean(axis=1) + np.array(at)
+        _numbers(ax, grid, joints, across(none + 0.5).mean(axis=1), _beam_width(ax, grid))
+
+
+def extent(grid: Grid) -> tuple[Array, Array]:
+    """Return the lower left and upper right corner (2,) of a grid, mm from its fixed joint."""
+    corners = _outline(grid.centred).joints.reshape(-1, 2)
     return corners.min(axis=0), corners.max(axis=0)
 
 
-def _numbers(ax: Axes, grid: Grid, middles: Array) -> None:
+def _outline(grid: Grid) -> Outline:
+    return outline(grid, load_material(grid.material).section)
+
+
+def _beam_width(ax: Axes, grid: Grid) -> float:
+    """Return how wide a beam is drawn, points."""
+    mm = load_material(grid.material).section.width
+    (left, _), (right, _) = ax.transData.transform([(0, 0), (mm, 0)])
+    return float(right - left) * 72 / ax.figure.dpi
+
+
+def _numbers(ax: Axes, grid: Grid, joints: Array, middles: Array, width: float) -> None:
+    """Write the numbers of joints and beams, so small that two digits fit across a beam."""
     centre: dict[str, Any] = {"ha": "center", "va": "center_baseline"}
-    for j, (x, y) in enumerate(grid.joints):
+    size = min(6.0, width / 1.5)
+    for j, (x, y) in enumerate(joints):
         colour = "white" if j == grid.fixed else style.INK
-        ax.text(x, y, str(j), color=colour, fontsize=6, fontweight="bold", **centre)
+        ax.text(x, y, str(j), color=colour, fontsize=size, fontweight="bold", **centre)
     for b, (x, y) in enumerate(middles):
-        strong = abs(grid.actuators[b]) > 0.5
-        ax.text(x, y, str(b), color="white" if strong else style.INK, fontsize=5.5, **centre)
+        colour = "white" if abs(grid.actuators[b]) > 0.5 else style.INK
+        ax.text(x, y, str(b), color=colour, fontsize=0.92 * size, **centre)
 
 
 def flat(grid: Grid, numbers: bool = True, width: float = 5.2) -> Figure:
@@ -74,16 +92,7 @@ def flat(grid: Grid, numbers: bool = True, width: float = 5.2) -> Figure:
     """
     with style.paper():
         fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax = fig.add_axes((0, 0, 1, 1))
-        low, high = draw_flat(ax, grid, numbers)
-        span = high - low
-        margin = 0.06 * float(max(span))
-        foot = 0.62  # inches for scale bar and legend
-        height = (width * (span[1] + 2 * margin) / (span[0] + 2 * margin)) + foot
-        fig.set_size_inches(width, height)
-        ax.set_position((0, foot / height, 1, 1 - foot / height))
-        style.bare(ax, low, high, margin)
-        inch = (span[0] + 2 * margin) / width  # mm
-        style.scale_bar(ax, low[0], low[1] - margin - 0.16 * inch, style.nice_length(span[0]))
-        style.legend(fig, (width - style.LEGEND_WIDTH) / 2 + 0.1, 0.14)
+        ax, _ = style.footed(fig, *extent(grid))
+        draw_flat(ax, grid, numbers)
+        style.legend(fig)
     return fig

@@ -4,15 +4,19 @@ Top and bottom actuators have the vermillion and blue of Okabe and Ito's palette
 any common colour blindness tell apart; a longer actuator has a deeper tint of them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import matplotlib
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.offsetbox import AnchoredOffsetbox, DrawingArea, HPacker, TextArea
 from matplotlib.patches import Rectangle
+from matplotlib.text import Text
+from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike, NDArray
 
 TOP, BOTTOM = "#d55e00", "#0072b2"
@@ -56,12 +60,29 @@ def colours(
     return rgb
 
 
-def bare(ax: Axes, low: NDArray[np.float64], high: NDArray[np.float64], margin: float) -> None:
-    """Make an axes show nothing but what is drawn, mm on both axes, from low to high (2,)."""
+FOOT = 0.56  # inches at the bottom of a picture for scale bar, words and legend
+
+
+def footed(fig: Figure, low: NDArray[np.float64], high: NDArray[np.float64]) -> tuple[Axes, float]:
+    """Give a figure of a fixed width the height that a picture from low to high (2,) needs.
+
+    Returns:
+        The axes for the picture, and how many mm of it an inch is.
+    """
+    width = fig.get_size_inches()[0]
+    margin = 0.05 * float(max(high - low))
+    across, up = high - low + 2 * margin
+    height = width * up / across + FOOT
+    fig.set_size_inches(width, height)
+    ax = fig.add_axes((0, FOOT / height, 1, 1 - FOOT / height))
     ax.set_xlim(low[0] - margin, high[0] + margin)
     ax.set_ylim(low[1] - margin, high[1] + margin)
     ax.set_aspect("equal")
     ax.axis("off")
+    inch = float(across / width)
+    length = nice_length(float(across))
+    scale_bar(ax, low[0], low[1] - margin - (FOOT - 0.4) * inch, length)
+    return ax, inch
 
 
 def nice_length(span: float) -> float:
@@ -71,43 +92,50 @@ def nice_length(span: float) -> float:
 
 
 def scale_bar(ax: Axes, x: float, y: float, length: float) -> None:
-    """Draw a bar of the given length (mm) from (x, y) to the right, its length written above."""
+    """Draw a bar of the given length (mm) from (x, y) to the right, its length written after it."""
     ax.plot([x, x + length], [y, y], color=INK, lw=1.6, solid_capstyle="butt", clip_on=False)
     ax.annotate(
         f"{length:g} mm",
-        (x + length / 2, y),
-        xytext=(0, 3),
+        (x + length, y),
+        xytext=(3, 0),
         textcoords="offset points",
-        ha="center",
-        va="bottom",
+        va="center_baseline",
+        fontsize=7,
         annotation_clip=False,
     )
 
 
-def legend(fig: Figure, left: float, bottom: float) -> None:
-    """Draw the key to the colours, a row of swatches, from (left, bottom) in inches."""
-    size, gap, x = 0.11, 0.05, left
+def words(fig: Figure, text: str) -> Text:
+    """Write a line of text above the legend, to the right."""
     width, height = fig.get_size_inches()
-    ax = fig.add_axes((0, 0, 1, 1), zorder=5)
-    ax.set_xlim(0, width)
-    ax.set_ylim(0, height)
-    ax.axis("off")
+    right = 1 - 0.25 / width
+    return fig.text(right, 0.4 / height, text, ha="right", va="center_baseline", fontsize=7)
 
-    def swatch(at: float, colour: object) -> None:
-        ax.add_patch(Rectangle((at, bottom), size, size, fc=colour, ec=LINE, lw=0.4))
 
-    def words(at: float, text: str) -> float:
-        ax.text(at, bottom + size / 2, text, va="center_baseline", fontsize=7)
-        return at + 0.058 * len(text)
+def legend(fig: Figure, inches: float = 0.1) -> None:
+    """Draw the key to the colours, a row of swatches in the middle, so high above the bottom."""
+    size = 7.0  # points
+    rows: list[Artist] = []
 
-    for name, sign in (("top half", 1), ("bottom half", -1)):
-        for ratio in (0.25, 0.5, 0.75, 1.0):
-            swatch(x, tint(sign * ratio))
-            x += size
-        x = words(x + gap, f"{name}, ¼ to 1") + 0.14
+    def entry(text: str, colours: Sequence[ColorType]) -> None:
+        box = DrawingArea(size * len(colours), size)
+        for k, colour in enumerate(colours):
+            box.add_artist(Rectangle((k * size, 0), size, size, fc=colour, ec=LINE, lw=0.4))
+        words = TextArea(text, textprops={"fontsize": 6.5})
+        rows.append(HPacker(children=[box, words], align="center", pad=0, sep=4))
+
+    for half, sign in (("top", 1), ("bottom", -1)):
+        tints = [tuple(tint(sign * ratio)) for ratio in (0.25, 0.5, 0.75, 1.0)]
+        entry(f"{half} half active, ¼ to 1", tints)
     for name, colour in (("passive", PASSIVE), ("joint", JOINT), ("fixed", FIXED)):
-        swatch(x, colour)
-        x = words(x + size + gap, name) + 0.14
-
-
-LEGEND_WIDTH = 5.0  # inches
+        entry(name, [colour])
+    key = AnchoredOffsetbox(
+        "lower center",
+        child=HPacker(children=rows, align="center", pad=0, sep=9),
+        bbox_to_anchor=(0.5, inches / fig.get_size_inches()[1]),
+        bbox_transform=fig.transFigure,
+        frameon=False,
+        pad=0,
+        borderpad=0,
+    )
+    fig.add_artist(key)
