@@ -2,9 +2,12 @@
 
 import dataclasses
 import errno
+import gc
 import json
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import meshio
@@ -12,6 +15,7 @@ import numpy as np
 import pytest
 import trimesh
 from PIL import Image
+from rich.console import Console
 
 import synthetic
 from simulearn import __version__, cli
@@ -352,6 +356,32 @@ def test_an_interrupt_says_so(run, failing, tmp_path):
     line = refused(run("simulate", "saddle", "-o", tmp_path / "a.json"), code=130)
     assert "interrupted" in line
     assert written(tmp_path) == []
+
+
+def test_an_interrupt_that_a_callback_swallows_comes_again(run, monkeypatch):
+    def swallowing(phase, info):
+        gc.callbacks.remove(swallowing)
+        signal.raise_signal(signal.SIGINT)
+
+    def solver(grid, material, progress):
+        gc.callbacks.append(swallowing)
+        gc.collect()
+        for _ in range(100):
+            time.sleep(0.05)
+        pytest.fail("went on")
+
+    monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
+    assert "interrupted" in refused(run("simulate", "saddle"), code=130)
+
+
+@pytest.mark.usefixtures("solved")
+def test_a_terminal_gets_a_bar_over_the_frames(run, monkeypatch):
+    terminal = Console(stderr=True, force_terminal=True, force_interactive=True)
+    monkeypatch.setattr(cli, "err", terminal)
+    code, _, err = run("simulate", "saddle")
+    assert code == 0
+    assert "12/12" in err
+    assert run("simulate", "saddle", "--json")[2] == ""
 
 
 def test_the_unexpected_is_one_line_too_unless_debugging(run, failing, monkeypatch):

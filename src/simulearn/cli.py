@@ -4,9 +4,11 @@ Exit codes: 0 done, 1 the input is wrong, 2 usage, 3 the computation failed, 130
 Solvers and plotting are imported only by the command that needs them, so that the others are quick.
 """
 
+import _thread
 import json
 import os
 import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -67,7 +69,12 @@ def simulate(
     engine: Annotated[str, typer.Option(help="Who answers: fea or calculix.")] = "fea",
     output: Annotated[
         list[Path] | None,
-        typer.Option("-o", "--output", help="A file to write; its ending picks the format."),
+        typer.Option(
+            "-o",
+            "--output",
+            help="A file to write (repeat for more); its ending picks the format: "
+            ".json .npz .png .pdf .svg .gif .glb .stl .vtu .pvd",
+        ),
     ] = None,
     as_json: Json = False,
 ) -> None:
@@ -149,7 +156,8 @@ def library_(
 
 def main() -> None:
     """Run the command line; every failure is one line and an exit code."""
-    code = None
+    code, hook = None, sys.unraisablehook
+    sys.unraisablehook = _interrupt_again
     try:
         code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
     except (typer.Abort, KeyboardInterrupt):
@@ -165,9 +173,19 @@ def main() -> None:
             raise
         what = f"{type(error).__name__}: {error}"
         _fail(f"unexpected {what} (SIMULEARN_DEBUG=1 shows where)", 3)
+    finally:
+        sys.unraisablehook = hook
     if code == 130:
         _fail("interrupted", 130)
     sys.exit(code)
+
+
+def _interrupt_again(lost: Any) -> None:
+    """Bring back an interrupt that met a library in a callback and was lost there, as in JAX's."""
+    if lost.exc_type is KeyboardInterrupt:
+        threading.Timer(0.02, _thread.interrupt_main).start()
+    else:
+        sys.__unraisablehook__(lost)
 
 
 def _fail(message: str, code: int) -> None:
