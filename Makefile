@@ -10,7 +10,7 @@ ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 
 demo: .venv/ready
 	mkdir -p out
-	$(BIN)/simulearn simulate examples/saddle.json -o out/saddle.json -o out/saddle.png -o out/saddle.gif -o out/saddle.glb
+	$(BIN)/simulearn simulate examples/twist.json -o out/twist.json -o out/twist.png -o out/twist.gif -o out/twist.glb
 
 test: .venv/ready
 	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist worksteal
@@ -31,7 +31,7 @@ bench: .venv/ready
 # The pictures of README.md.
 pictures: .venv/ready
 	mkdir -p docs/pictures
-	$(BIN)/simulearn simulate examples/saddle.json -o docs/pictures/saddle.gif
+	$(BIN)/simulearn simulate examples/twist.json -o docs/pictures/twist.gif
 	$(BIN)/simulearn simulate examples/random.json -o docs/pictures/random.png
 
 clean:

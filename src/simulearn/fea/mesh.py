@@ -66,7 +66,8 @@ def cuts(ratio: float, slabs: int) -> Array:
         (slabs + 1,) positions; uniform for every ratio that is a multiple of 2 / slabs.
     """
     ratio = abs(ratio)
-    if ratio in (0.0, 1.0):
+    # An end shorter than a printed line is no end: slivers would only spoil the mesh.
+    if ratio == 0 or ratio > 0.99:
         return np.linspace(0, 1, slabs + 1)
     half = int(np.clip(round(ratio * slabs / 2), 1, slabs // 2 - 1))
     first = np.linspace(0, (1 - ratio) / 2, slabs // 2 - half + 1)
