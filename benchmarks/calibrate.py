@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 
 from simulearn.fea import simulate_grid
 from simulearn.fea.bar import bar, curvature
+from simulearn.files import replacing
 from simulearn.grid import Rules, draw_valid
 from simulearn.material import Material, load_material
 from simulearn.material.material import HERE
@@ -79,7 +80,8 @@ def main() -> None:
             pattern = rf"(?m)^({key} *= *)[\d.]+(?=.*(?:half; calibrated|same e|elastic strain))"
             text, count = re.subn(pattern, rf"\g<1>{value}", text)
             assert count == 1, key
-        path.write_text(text, encoding="utf-8")
+        with replacing(path) as temporary:
+            temporary.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -91,8 +91,6 @@ def simulate(
         err.print(f"[yellow]warning:[/] {escape(warning.message)}")
     with _progress(quiet=as_json) as progress:
         result = answering.simulate([design], progress)[0]
-    if "note" in result.record:
-        err.print(f"[yellow]note:[/] {escape(result.record['note'])}")
     if not result.record.get("stable", True):
         err.print("[yellow]note:[/] the shape is in unstable balance and may snap into another")
     for path in files:

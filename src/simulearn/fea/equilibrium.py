@@ -133,7 +133,7 @@ class Equilibrium:
             try:
                 path.append(self._increment(path, float(s), float(g)))
                 done = to
-                step = 1.0
+                step = 1.0 - done
             except NotConvergedError as error:
                 reason = str(error)
                 step /= 2

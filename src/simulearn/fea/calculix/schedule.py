@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 
+from simulearn.fea.trial import STEPS
 from simulearn.material import Material
-
-RELEASES = 10
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,8 @@ def schedule(material: Material, parts: int = 1) -> list[Step]:
     """
     load = material.gravity.body_force
     steps = [Step(0.0, load, None)] if load else []
-    count = RELEASES * parts
+    count = STEPS * parts
     for k in range(1, count + 1):
         frame, rest = divmod(k, parts)
         steps.append(Step(k / count, load, None if rest else frame))
-    return [*steps, Step(1.0, load * (1 + material.creep.amplitude), RELEASES + 1)]
+    return [*steps, Step(1.0, load * (1 + material.creep.amplitude), STEPS + 1)]
