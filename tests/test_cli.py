@@ -377,7 +377,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(run, monkeypatch):
 @pytest.mark.usefixtures("solved")
 def test_a_terminal_gets_a_bar_over_the_frames(run, monkeypatch):
     terminal = Console(stderr=True, force_terminal=True, force_interactive=True)
-    monkeypatch.setattr(cli, "err", terminal)
+    monkeypatch.setattr(cli.grids, "err", terminal)
     code, _, err = run("simulate", "saddle")
     assert code == 0
     assert "12/12" in err

@@ -4,15 +4,19 @@ The rules are those of the paper's authors; each is a parameter. A draw depends 
 its number only, so that any design of a set can be drawn again alone and on any machine.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from math import cos, pi, sin, sqrt
+from typing import Annotated
 
 import numpy as np
+from pydantic import AfterValidator, ConfigDict, Field
+from pydantic.dataclasses import dataclass
 
 from simulearn.errors import InputError
+from simulearn.grid.cleaning import clean
 from simulearn.grid.grid import Grid
-from simulearn.grid.lattice import lattice
+from simulearn.grid.lattice import MOST_CELLS, drop_beams, lattice
 from simulearn.grid.outline import outline
 from simulearn.grid.validation import validate
 from simulearn.material import Material, load_material
@@ -20,7 +24,21 @@ from simulearn.material import Material, load_material
 MOST_REDRAWS = 1000
 
 
-@dataclass(frozen=True)
+def _rising(values: tuple[float, ...]) -> tuple[float, ...]:
+    if any(b < a for a, b in pairwise(values)):
+        raise ValueError("the values must rise")
+    return values
+
+
+_Cells = Annotated[int, Field(ge=1, le=MOST_CELLS)]
+_Length = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+_Distance = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+_Fraction = Annotated[float, Field(ge=0, le=1)]
+_Ratio = Annotated[float, Field(gt=0, le=1)]
+_Count = Annotated[int, Field(ge=0)]
+
+
+@dataclass(frozen=True, config=ConfigDict(extra="forbid"))
 class Rules:
     """How designs are drawn.
 
@@ -32,16 +50,23 @@ class Rules:
         ratios: the lengths that an actuator may have, rising; drawn evenly.
         top: probability that an actuator is in the top half.
         shortest: a shorter actuator is raised to the next of `ratios` that is not, mm.
+        removed: least and most beams taken out, drawn evenly; what then dangles goes too.
         material: name of the material system.
     """
 
-    cells: tuple[int, int] = (2, 2)
-    length: tuple[float, float] = (40.0, 75.0)
-    jitter: float = 30.0
-    inactive: float = 0.33
-    ratios: tuple[float, ...] = (0.25, 0.5, 0.75, 1.0)
-    top: float = 0.5
-    shortest: float = 10.0
+    cells: tuple[_Cells, _Cells] = (2, 2)
+    length: Annotated[tuple[_Length, _Length], AfterValidator(_rising)] = (40.0, 75.0)
+    jitter: _Distance = 30.0
+    inactive: _Fraction = 0.33
+    ratios: Annotated[tuple[_Ratio, ...], Field(min_length=1), AfterValidator(_rising)] = (
+        0.25,
+        0.5,
+        0.75,
+        1.0,
+    )
+    top: _Fraction = 0.5
+    shortest: _Distance = 10.0
+    removed: Annotated[tuple[_Count, _Count], AfterValidator(_rising)] = (0, 0)
     material: str = "pla-hot-water"
 
 
@@ -75,6 +100,15 @@ def draw(rules: Rules, seed: int, k: int, redraw: int = 0) -> Grid:
             ratio = rules.ratios[int(size * len(rules.ratios))]
             ratios[beam] = ratio if half < rules.top else -ratio
     grid = Grid(joints, plain.beams, ratios, plain.fixed, rules.material)
+    if rules.removed[1]:
+        least, most = rules.removed
+        count = least + int(uniform() * (most + 1 - least))
+        order = np.argsort([uniform() for _ in ratios], kind="stable")
+        grid = drop_beams(grid, order[:count].tolist())
+        try:
+            grid = clean(grid)[0]
+        except InputError:
+            return grid  # nothing sound is left
     return _lengthened(grid, rules)
 
 

@@ -1,66 +1,21 @@
-"""The command line: what a user types, with errors of one line and an exit code for machines.
+"""Commands about one grid: simulate, validate, library."""
 
-Exit codes: 0 done, 1 the input is wrong, 2 usage, 3 the computation failed, 130 interrupted.
-Solvers and plotting are imported only by the command that needs them, so that the others are quick.
-"""
-
-import _thread
 import json
-import os
-import sys
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn import __version__
-from simulearn.errors import ComputationError, InputError
-from simulearn.grid import (
-    Grid,
-    Message,
-    Validation,
-    grid_to_dict,
-    library,
-    make,
-    read_grid,
-    validate,
-    write_grid,
-)
-from simulearn.material import load_material
+from simulearn.cli.base import GridArgument, Json, app, err, grid_of, out, validated
+from simulearn.errors import InputError
+from simulearn.grid import Message, Validation, grid_to_dict, library, make, write_grid
 
 if TYPE_CHECKING:
     from simulearn.simulate import Progress, Result
-
-app = typer.Typer(
-    name="simulearn",
-    help="The shape a flat 4D-printed grid takes in hot water.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-out = Console(soft_wrap=True, highlight=False)  # a message is one line, whoever reads it
-err = Console(stderr=True, soft_wrap=True, highlight=False)
-
-GridArgument = Annotated[
-    str, typer.Argument(metavar="GRID", help="A grid file (.json), or a name from the library.")
-]
-Json = Annotated[bool, typer.Option("--json", help="Print the machine form.")]
-
-
-@app.callback(invoke_without_command=True)
-def root(
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
-) -> None:
-    """Simulate, validate and draw 4D-printed grids."""
-    if version:
-        print(f"simulearn {__version__}")
-        raise typer.Exit
 
 
 @app.command()
@@ -84,10 +39,10 @@ def simulate(
     from simulearn.simulate import result_to_dict, summary
 
     files = output or []
-    design = _grid(grid)
+    design = grid_of(grid)
     outputs.check(files, Path(grid))
     answering = engine_of(engine)
-    for warning in _validated(design).warnings:
+    for warning in validated(design).warnings:
         err.print(f"[yellow]warning:[/] {escape(warning.message)}")
     with _progress(quiet=as_json) as progress:
         result = answering.simulate([design], progress)[0]
@@ -108,7 +63,7 @@ def simulate(
 def validate_(grid: GridArgument, as_json: Json = False) -> None:
     """Check a grid: errors keep it from being simulated, warnings do not."""
     try:
-        report = _validated(_grid(grid))
+        report = validated(grid_of(grid))
     except InputError as error:
         if as_json:  # machines get the same form, whatever is wrong
             print(json.dumps(Validation((Message("input", "grid", str(error)),), ()).to_dict()))
@@ -150,62 +105,6 @@ def library_(
         out.print(f"wrote {escape(str(output))}")
     if as_json or output is None:
         print(json.dumps(grid_to_dict(grid)))
-
-
-def main() -> None:
-    """Run the command line; every failure is one line and an exit code."""
-    code, hook = None, sys.unraisablehook
-    sys.unraisablehook = _interrupt_again
-    try:
-        code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
-    except (typer.Abort, KeyboardInterrupt):
-        code = 130
-    except InputError as error:
-        _fail(str(error), 1)
-    except ComputationError as error:
-        _fail(str(error), 3)
-    except Exception as error:
-        if hasattr(error, "exit_code") and hasattr(error, "format_message"):  # usage
-            _fail(f"{error.format_message()} (see simulearn --help)", int(error.exit_code))
-        if os.environ.get("SIMULEARN_DEBUG"):
-            raise
-        what = f"{type(error).__name__}: {error}"
-        _fail(f"unexpected {what} (SIMULEARN_DEBUG=1 shows where)", 3)
-    finally:
-        sys.unraisablehook = hook
-    if code == 130:
-        _fail("interrupted", 130)
-    sys.exit(code)
-
-
-def _interrupt_again(lost: Any) -> None:
-    """Bring back an interrupt that met a library in a callback and was lost there, as in JAX's."""
-    if lost.exc_type is KeyboardInterrupt:
-        threading.Timer(0.02, _thread.interrupt_main).start()
-    else:
-        sys.__unraisablehook__(lost)
-
-
-def _fail(message: str, code: int) -> None:
-    line = " ".join(message.split())
-    err.print(f"[red]simulearn:[/] {escape(line)}")
-    sys.exit(code)
-
-
-def _grid(name: str) -> Grid:
-    """Return the grid of a file, or of the library if there is no such file."""
-    if name in library() and not Path(name).exists():
-        return make(name)
-    try:
-        return read_grid(name)
-    except InputError as error:
-        if isinstance(error.__cause__, FileNotFoundError) and not Path(name).suffix:
-            raise InputError(f"{name}: is neither a file nor a grid of the library") from error
-        raise
-
-
-def _validated(grid: Grid) -> Validation:
-    return validate(grid, load_material(grid.material))
 
 
 def _cells(text: str) -> tuple[int, int]:
@@ -256,7 +155,3 @@ def _table(result: "Result") -> Table:
         words = [f"{round(x, 1) + 0.0:.1f}" for x in places]
         table.add_row(f"fixed {k}" if k == result.grid.fixed else str(k), *words)
     return table
-
-
-if __name__ == "__main__":
-    main()

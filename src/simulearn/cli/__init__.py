@@ -1,0 +1,69 @@
+"""The command line: what a user types, with errors of one line and an exit code for machines.
+
+Exit codes: 0 done, 1 the input is wrong, 2 usage, 3 the computation failed, 130 interrupted.
+Solvers and plotting are imported only by the command that needs them, so that the others are quick.
+"""
+
+import _thread
+import os
+import sys
+import threading
+from typing import Annotated, Any
+
+import typer
+from rich.markup import escape
+
+from simulearn import __version__
+from simulearn.cli import dataset, grids  # noqa: F401  (they add their commands)
+from simulearn.cli.base import app, err
+from simulearn.errors import ComputationError, InputError
+
+
+@app.callback(invoke_without_command=True)
+def root(
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Simulate, validate and draw 4D-printed grids."""
+    if version:
+        print(f"simulearn {__version__}")
+        raise typer.Exit
+
+
+def main() -> None:
+    """Run the command line; every failure is one line and an exit code."""
+    code, hook = None, sys.unraisablehook
+    sys.unraisablehook = _interrupt_again
+    try:
+        code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
+    except (typer.Abort, KeyboardInterrupt):
+        code = 130
+    except InputError as error:
+        _fail(str(error), 1)
+    except ComputationError as error:
+        _fail(str(error), 3)
+    except Exception as error:
+        if hasattr(error, "exit_code") and hasattr(error, "format_message"):  # usage
+            _fail(f"{error.format_message()} (see simulearn --help)", int(error.exit_code))
+        if os.environ.get("SIMULEARN_DEBUG"):
+            raise
+        what = f"{type(error).__name__}: {error}"
+        _fail(f"unexpected {what} (SIMULEARN_DEBUG=1 shows where)", 3)
+    finally:
+        sys.unraisablehook = hook
+    if code == 130:
+        _fail("interrupted", 130)
+    sys.exit(code)
+
+
+def _interrupt_again(lost: Any) -> None:
+    """Bring back an interrupt that met a library in a callback and was lost there, as in JAX's."""
+    if lost.exc_type is KeyboardInterrupt:
+        threading.Timer(0.02, _thread.interrupt_main).start()
+    else:
+        sys.__unraisablehook__(lost)
+
+
+def _fail(message: str, code: int) -> None:
+    line = " ".join(message.split())
+    err.print(f"[red]simulearn:[/] {escape(line)}")
+    sys.exit(code)

@@ -1,0 +1,210 @@
+"""Generating a data set: every trial in its own file, so that a run goes on where it stopped.
+
+FOLDER/config.json         what is being generated
+FOLDER/trials/KEY.npz      a trial, written in one step
+FOLDER/failures/KEY.json   a design that has no result, and why
+"""
+
+import json
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from simulearn.dataset.config import Config, config_of
+from simulearn.dataset.trial import Answer, Job
+from simulearn.dataset.workers import Workers, local_workers
+from simulearn.errors import ComputationError, InputError
+from simulearn.files import read_text, replacing
+
+AHEAD = 2  # jobs given to each worker, so that none waits for its next
+TRIES = 3  # of a trial whose worker dies
+DIED = Answer("broken", reason=f"its worker died, {TRIES} times")
+
+
+@dataclass
+class Tally:
+    """How far a run is.
+
+    Attributes:
+        trials: designs in the set.
+        kept: trials and failures that were there before this run.
+        done: trials of this run.
+        failed: failures in the folder, of this run or before.
+        seconds: the solver's time in the trials of this run.
+    """
+
+    trials: int
+    kept: int = 0
+    done: int = 0
+    failed: int = 0
+    seconds: float = 0.0
+    reasons: list[str] = field(default_factory=list)
+
+    @property
+    def left(self) -> int:
+        """Designs that have neither a trial nor a failure yet."""
+        return self.trials - self.kept - self.done - len(self.reasons)
+
+
+class Folder:
+    """The folder of a data set that is being generated.
+
+    Args:
+        path: where; made if it is not there.
+        config: of the set; None takes the one that is there.
+
+    Raises:
+        InputError: another set is there, or none, or the folder cannot be made.
+    """
+
+    def __init__(self, path: Path | str, config: Config | None = None) -> None:
+        self.path = Path(path)
+        described = self.path / "config.json"
+        if config is None:
+            if not described.exists():
+                raise InputError(f"{path}: is not the folder of a data set (no config.json)")
+            config = self._described(described)
+        else:
+            if described.exists() and (wrong := config.differences(self._described(described))):
+                raise InputError(
+                    f"{path}: holds another data set ({'; '.join(wrong)}); choose another folder"
+                )
+            try:
+                for folder in (self.path, self.path / "trials", self.path / "failures"):
+                    folder.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise InputError(f"{path}: cannot be made ({error.strerror})") from error
+            with replacing(described) as temporary:
+                temporary.write_text(config.model_dump_json(indent=1) + "\n", "utf-8")
+        self.config = config
+
+    def trial(self, key: str) -> Path:
+        """Return where a trial is kept."""
+        return self.path / "trials" / f"{key}.npz"
+
+    def failure(self, key: str) -> Path:
+        """Return where it is kept why a design has no trial."""
+        return self.path / "failures" / f"{key}.json"
+
+    def has(self, key: str) -> bool:
+        """Return whether a design needs no more work."""
+        return self.trial(key).exists() or self.failure(key).exists()
+
+    def keep(self, k: int, job: Job, answer: Answer) -> None:
+        """Keep an answer."""
+        if answer.outcome == "done":
+            with replacing(self.trial(job.key)) as temporary:
+                temporary.write_bytes(answer.content)
+            return
+        told = {
+            "trial": k,
+            "outcome": answer.outcome,
+            "reason": answer.reason,
+            "grid": job.grid,
+        }
+        with replacing(self.failure(job.key)) as temporary:
+            temporary.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+
+    def forget_failures(self, outcomes: tuple[str, ...]) -> None:
+        """Forget failures of a kind, so that they are tried again."""
+        for path in (self.path / "failures").glob("*.json"):
+            if json.loads(read_text(path)).get("outcome") in outcomes:
+                path.unlink()
+
+    def sweep(self) -> None:
+        """Take away what a killed run left half written."""
+        for path in [*self.path.glob("*/.*.npz"), *self.path.glob("*/.*.json")]:
+            path.unlink(missing_ok=True)
+
+    @staticmethod
+    def _described(path: Path) -> Config:
+        try:
+            data = json.loads(read_text(path))
+        except json.JSONDecodeError as error:
+            raise InputError(f"{path}: is not valid JSON: {error}") from error
+        return config_of(data, str(path))
+
+
+def generate(
+    config: Config,
+    path: Path | str,
+    workers: AbstractContextManager[Workers] | None = None,
+    progress: Callable[[Tally], None] = lambda tally: None,
+) -> Tally:
+    """Generate the trials of a data set that are not there yet.
+
+    Args:
+        config: of the set.
+        path: of its folder.
+        workers: who computes; by default a process for each core.
+        progress: called when the work begins and after each trial.
+
+    Raises:
+        InputError: the folder holds another set, or cannot be written.
+        ComputationError: the disk is full, or no worker is left.
+    """
+    folder = Folder(path, config)
+    folder.sweep()
+    folder.forget_failures(("broken",))
+    tally = Tally(config.trials)
+    todo = _missing(folder, tally)
+    first = next(todo, None)
+    if first is None:
+        progress(tally)
+        return tally
+    with workers or local_workers(os.cpu_count() or 1) as team:
+        progress(tally)
+        running: dict[Future[Answer], tuple[int, Job, int]] = {}
+        upcoming: tuple[int, Job] | None = first
+        while upcoming or running:
+            while upcoming and len(running) < AHEAD * max(team.count(), 1):
+                running[team.submit(upcoming[1])] = (*upcoming, 1)
+                upcoming = next(todo, None)
+            for future in wait(running, return_when=FIRST_COMPLETED)[0]:
+                k, job, tries = running.pop(future)
+                answer = _answer(future)
+                if answer is None and tries < TRIES:
+                    running[team.submit(job)] = (k, job, tries + 1)
+                    continue
+                _take(folder, tally, k, job, answer or DIED)
+                progress(tally)
+    return tally
+
+
+def _missing(folder: Folder, tally: Tally) -> Iterator[tuple[int, Job]]:
+    """Yield the designs that have no trial yet, and count those that have."""
+    for k in range(folder.config.trials):
+        job = Job.of(folder.config.design(k)[0], folder.config)
+        if folder.has(job.key):
+            tally.kept += 1
+            tally.failed += folder.failure(job.key).exists()
+        else:
+            yield k, job
+
+
+def _answer(future: "Future[Answer]") -> Answer | None:
+    """Return the answer; None if the worker died."""
+    try:
+        return future.result()
+    except TimeoutError:
+        return Answer("broken", reason="took too long and was given up")
+    except Exception:
+        return None
+
+
+def _take(folder: Folder, tally: Tally, k: int, job: Job, answer: Answer) -> None:
+    try:
+        folder.keep(k, job, answer)
+    except InputError as error:
+        raise ComputationError(
+            f"{error}; {tally.kept + tally.done} trials are kept, and the same command goes on"
+        ) from error
+    if answer.outcome == "done":
+        tally.done += 1
+        tally.seconds += answer.seconds
+    else:
+        tally.failed += 1
+        tally.reasons.append(f"trial {k}: {answer.reason}")

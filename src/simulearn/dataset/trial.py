@@ -1,0 +1,134 @@
+"""One trial of a data set: what is asked, the key it is kept under, and the file it is kept in.
+
+The key is a hash of everything that the answer depends on: design, material, solver settings and
+the version of the solver. The file holds arrays of single precision (a hundred millimetres to
+less than 1e-5 mm).
+"""
+
+import hashlib
+import io
+import json
+import zipfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.dataset.config import Config, Solver
+from simulearn.errors import ComputationError, InputError
+from simulearn.grid import Grid, grid_from_dict, grid_to_dict
+from simulearn.material import Material
+
+# Raise it when the solver answers differently, so that older trials are not taken for new ones.
+SOLVER_VERSION = 1
+
+Array = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a worker is asked, in plain data that travels to other machines.
+
+    Attributes:
+        grid: the design, as in a grid file.
+        material: the material system.
+        solver: mesh and convergence settings.
+    """
+
+    grid: dict[str, Any]
+    material: dict[str, Any]
+    solver: dict[str, Any]
+
+    @classmethod
+    def of(cls, grid: Grid, config: Config) -> "Job":
+        """Return the job of a design."""
+        return cls(
+            grid_to_dict(grid),
+            config.material.model_dump(mode="json"),
+            config.solver.model_dump(mode="json"),
+        )
+
+    @property
+    def key(self) -> str:
+        """The name under which the answer is kept."""
+        asked = {"version": SOLVER_VERSION, **asdict(self)}
+        text = json.dumps(asked, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a worker answers.
+
+    Attributes:
+        outcome: "done", or why there is no result: "failed" (the solver finds none, and would
+            not another time) or "broken" (anything else).
+        content: of the trial's file.
+        reason: why there is none.
+        seconds: time the solver took.
+    """
+
+    outcome: Literal["done", "failed", "broken"]
+    content: bytes = b""
+    reason: str = ""
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class StoredTrial:
+    """A trial read from its file; shapes and units as in `fea.Trial`."""
+
+    grid: Grid
+    joints: Array
+    beams: Array
+    stress: Array
+    record: dict[str, Any]
+    seconds: float
+
+
+def run(job: Job) -> Answer:
+    """Simulate a design; whatever goes wrong is an answer, too."""
+    from simulearn.fea import simulate_grid
+
+    try:
+        grid, solver = grid_from_dict(job.grid), Solver.model_validate(job.solver)
+        material = Material.model_validate(job.material)
+        trial = simulate_grid(grid, material, solver.layout, solver.control)
+    except (ComputationError, InputError) as error:
+        return Answer("failed", reason=str(error))
+    except Exception as error:
+        return Answer("broken", reason=f"{type(error).__name__}: {error}")
+    arrays = {name: getattr(trial, name) for name in ("joints", "beams", "stress")}
+    if not all(np.isfinite(array).all() for array in arrays.values()):
+        return Answer("failed", reason="the result is not finite")
+    buffer = io.BytesIO()
+    np.savez_compressed(
+        buffer,
+        grid=json.dumps(job.grid),
+        record=json.dumps(trial.record),
+        seconds=trial.seconds,
+        **{name: array.astype(np.float32) for name, array in arrays.items()},
+    )
+    return Answer("done", buffer.getvalue(), seconds=trial.seconds)
+
+
+def read_trial(path: Path) -> StoredTrial:
+    """Read a trial from its file.
+
+    Raises:
+        InputError: it is not such a file.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return StoredTrial(
+                grid_from_dict(json.loads(file["grid"].item())),
+                file["joints"],
+                file["beams"],
+                file["stress"],
+                json.loads(file["record"].item()),
+                float(file["seconds"]),
+            )
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise InputError(f"{path}: is not a trial; delete it and generate the set again") from error
