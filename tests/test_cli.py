@@ -29,22 +29,6 @@ ENDINGS = ["json", "npz", "png", "pdf", "svg", "gif", "glb", "stl", "vtu", "pvd"
 
 
 @pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a function that runs a command line: (exit code, stdout, stderr)."""
-
-    def run(*words):
-        monkeypatch.setattr(sys, "argv", ["simulearn", *map(str, words)])
-        try:
-            cli.main()
-            code = 0
-        except SystemExit as stop:
-            code = stop.code or 0
-        return code, *capsys.readouterr()
-
-    return run
-
-
-@pytest.fixture
 def solved(monkeypatch):
     """Let a formula stand in for finite elements; return the grids that it was asked for."""
     asked = []

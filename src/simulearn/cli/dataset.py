@@ -1,1 +1,245 @@
 """Commands about data sets: generate, pack, info."""
+
+import json
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+
+from simulearn.cli.base import Json, app, err, out
+from simulearn.errors import InputError
+
+if TYPE_CHECKING:
+    from simulearn.dataset import Dataset, Tally
+
+dataset = typer.Typer(help="Generate, pack and look at data sets.", no_args_is_help=True)
+app.add_typer(dataset, name="dataset")
+
+Packed = Annotated[Path, typer.Argument(metavar="FILE", help="A packed data set (.h5).")]
+
+
+@dataset.command()
+def generate(
+    config: Annotated[
+        str,
+        typer.Argument(
+            metavar="CONFIG",
+            help="A TOML file, or default, beams-removed, 2x3, 3x3 or sample.",
+        ),
+    ],
+    output: Annotated[Path, typer.Option("-o", "--output", help="The folder of the set.")],
+    trials: Annotated[
+        int | None, typer.Option(min=1, help="How many designs, other than the file says.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(min=1, help="Processes; by default one for each core.")
+    ] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Address of a Dask scheduler, as tcp://host:8786.")
+    ] = None,
+    retry: Annotated[bool, typer.Option("--retry", help="Try failed designs again.")] = False,
+    as_json: Json = False,
+) -> None:
+    """Simulate random designs; the same command goes on where it was stopped."""
+    from simulearn import dataset as sets
+    from simulearn.dataset.generate import Folder
+
+    if scheduler and workers:
+        raise InputError("--workers is for this machine; the cluster of --scheduler has its own")
+    asked = sets.read_config(config)
+    if trials is not None:
+        asked = asked.model_copy(update={"trials": trials})
+    if retry:
+        Folder(output, asked).forget_failures()
+    team = (
+        sets.cluster_workers(scheduler)
+        if scheduler
+        else sets.local_workers(workers or os.cpu_count() or 1)
+    )
+    try:
+        with _rate(quiet=as_json) as tell:
+            tally = sets.generate(asked, output, team, tell)
+    except KeyboardInterrupt:
+        err.print("stopped; what is finished is kept, and the same command goes on")
+        raise
+    if as_json:
+        print(json.dumps(_plain(tally)))
+        return
+    for reason in tally.reasons[:10]:
+        err.print(f"[yellow]failed:[/] {escape(reason)}")
+    out.print(
+        f"{escape(str(output))}: {tally.kept + tally.done + len(tally.reasons) - tally.failed:,} "
+        f"trials, {tally.failed} failed ({tally.done:,} new, {tally.per_minute:.0f} a minute)"
+    )
+
+
+@dataset.command()
+def pack(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of the set.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="The packed file (.h5).")],
+    partial: Annotated[
+        bool, typer.Option("--partial", help="Pack what is there, though trials are missing.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Pack a generated folder into one HDF5 file."""
+    from simulearn import dataset as sets
+
+    with _bar("packing", quiet=as_json) as tell:
+        count = sets.pack(folder, output, partial, tell)
+    size = output.stat().st_size
+    if as_json:
+        print(json.dumps({"file": str(output), "trials": count, "bytes": size}))
+    else:
+        out.print(f"wrote {escape(str(output))}: {count:,} trials, {size / 1e6:.1f} MB")
+
+
+@dataset.command()
+def info(
+    file: Packed,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="A picture (.png .pdf .svg).")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Say what is in a packed data set, and how near it is to the paper's."""
+    from simulearn import dataset as sets
+    from simulearn.dataset.statistics import summary
+    from simulearn.files import replacing
+
+    if output is not None and output.suffix not in (".png", ".pdf", ".svg"):
+        raise InputError(f"{output}: a picture ends in .png, .pdf or .svg")
+    data = sets.read_dataset(file, stress=False)
+    told, found = sets.checksum(file)
+    if told != found:
+        raise InputError(f"{file}: is damaged (its SHA-256 is {found[:12]}…, not {told[:12]}…)")
+    figures = summary(data)
+    if output is not None:
+        from simulearn.show.dataset import dataset_picture
+
+        with replacing(output) as temporary:
+            dataset_picture(data).savefig(temporary)
+    if as_json:
+        print(json.dumps(figures))
+        return
+    out.print(_heading(data, figures))
+    out.print(_quantities(figures["quantities"]))
+    if output is not None:
+        out.print(f"wrote {escape(str(output))}")
+
+
+def _heading(data: "Dataset", figures: dict[str, Any]) -> str:
+    joints, beams = (
+        "-".join(map(str, sorted({figures[name][0], figures[name][-1]})))
+        for name in ("joints", "beams")
+    )
+    lines = [
+        f"{escape(figures['name'])}: {figures['trials']:,} trials "
+        f"({figures['train']:,} to learn, {figures['test']:,} to test), "
+        f"{figures['topologies']} topologies of {joints} joints and {beams} beams",
+        f"{figures['failed']} failed, {figures['redrawn']} designs redrawn, "
+        f"{figures['unstable']} unstable, {figures['halved']} with halved increments, "
+        f"{figures['iterations']['median']:.0f} iterations (median)",
+        f"SHA-256 {figures['sha256']}",
+        *(f"trial {k} failed: {escape(reason)}" for k, reason in data.failures[:10]),
+    ]
+    return "\n".join(lines)
+
+
+def _quantities(figures: dict[str, dict[str, Any]]) -> Table:
+    table = Table(box=None)
+    for name in ("", "mean", "least", "3 %", "median", "97 %", "most", "the paper's"):
+        left = name in ("", "the paper's")
+        table.add_column(name, justify="left" if left else "right", no_wrap=True)
+    for name, q in figures.items():
+        paper = ", ".join(
+            f"{key if key == 'mean' else key[1:] + ' %'} {value:g}"
+            for key, value in q["paper"].items()
+        )
+        row = [q[key] for key in ("mean", "p0", "p3", "p50", "p97", "p100")]
+        words = f"{name.removesuffix('_percent').replace('_', ' ')} {q['unit']}".strip()
+        table.add_row(words, *(f"{value:.2f}" for value in row), paper)
+    return table
+
+
+def _plain(tally: "Tally") -> dict[str, Any]:
+    return {
+        "trials": tally.trials,
+        "kept": tally.kept,
+        "new": tally.done,
+        "failed": tally.failed,
+        "reasons": tally.reasons,
+        "per_minute": round(tally.per_minute, 2),
+    }
+
+
+def _columns() -> list[Any]:
+    return [
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[words]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(elapsed_when_finished=False),
+    ]
+
+
+@contextmanager
+def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """Yield what is told (done, total)."""
+    if quiet or not err.is_terminal:
+        yield lambda done, total: None
+        return
+    with Progress(*_columns(), console=err, transient=True) as bar:
+        task = bar.add_task(title, total=None, words="")
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
+def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
+    """Yield what a run tells its tally to: a bar, or lines where it is no terminal."""
+    if quiet:
+        yield lambda tally: None
+        return
+    if not err.is_terminal:
+        yield _lines
+        return
+    # The rate of a long run settles; the last quarter of an hour is what remaining time goes by.
+    with Progress(*_columns(), console=err, transient=True, speed_estimate_period=900) as bar:
+        task: list[TaskID] = []
+
+        def tell(tally: "Tally") -> None:
+            done = tally.trials - tally.left
+            words = f"{tally.per_minute:.0f}/min" + (
+                f", {tally.failed} failed" if tally.failed else ""
+            )
+            if not task:
+                task.append(bar.add_task("trials", total=tally.trials, completed=done, words=""))
+            bar.update(task[0], completed=done, words=words)
+
+        yield tell
+
+
+def _lines(tally: "Tally") -> None:
+    """Tell every hundredth trial, for logs."""
+    new = tally.done + len(tally.reasons)
+    if new % 100 == 0 or tally.left == 0:
+        err.print(
+            f"{tally.trials - tally.left:,} of {tally.trials:,} trials, {tally.failed} failed, "
+            f"{tally.per_minute:.0f} a minute"
+        )

@@ -1,6 +1,6 @@
 """Data sets: random designs and their trials, generated, packed and read."""
 
-from simulearn.dataset.config import Config, read_config, shipped
+from simulearn.dataset.config import Config, config_of, read_config, shipped
 from simulearn.dataset.generate import Tally, generate
 from simulearn.dataset.pack import pack
 from simulearn.dataset.packed import Batch, Dataset, checksum, read_dataset
@@ -13,6 +13,7 @@ __all__ = [
     "Tally",
     "checksum",
     "cluster_workers",
+    "config_of",
     "generate",
     "local_workers",
     "pack",

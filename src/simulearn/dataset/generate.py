@@ -7,7 +7,8 @@ FOLDER/failures/KEY.json   a design that has no result, and why
 
 import json
 import os
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
@@ -34,6 +35,7 @@ class Tally:
         done: trials of this run.
         failed: failures in the folder, of this run or before.
         seconds: the solver's time in the trials of this run.
+        reasons: why trials of this run failed.
     """
 
     trials: int
@@ -42,10 +44,17 @@ class Tally:
     failed: int = 0
     seconds: float = 0.0
     reasons: list[str] = field(default_factory=list)
+    begun: float = field(default_factory=time.monotonic)
+
+    @property
+    def per_minute(self) -> float:
+        """Trials and failures of this run a minute."""
+        passed = time.monotonic() - self.begun
+        return 60 * (self.done + len(self.reasons)) / max(passed, 1e-9)
 
     @property
     def left(self) -> int:
-        """Designs that have neither a trial nor a failure yet."""
+        """Designs that this run has not come to yet, or is computing."""
         return self.trials - self.kept - self.done - len(self.reasons)
 
 
@@ -108,8 +117,8 @@ class Folder:
         with replacing(self.failure(job.key)) as temporary:
             temporary.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
 
-    def forget_failures(self, outcomes: tuple[str, ...]) -> None:
-        """Forget failures of a kind, so that they are tried again."""
+    def forget_failures(self, outcomes: Collection[str] = ("failed", "broken")) -> None:
+        """Forget failures of some outcomes, so that they are tried again."""
         for path in (self.path / "failures").glob("*.json"):
             if json.loads(read_text(path)).get("outcome") in outcomes:
                 path.unlink()

@@ -121,7 +121,8 @@ def read_trial(path: Path) -> StoredTrial:
         InputError: it is not such a file.
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # Opened here, since NumPy leaves a broken file open.
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return StoredTrial(
                 grid_from_dict(json.loads(file["grid"].item())),
                 file["joints"],
