@@ -1,0 +1,1 @@
+"""Grids of beams between joints: poses, a fitted section, equilibrium, and its frames."""

@@ -1,0 +1,142 @@
+"""Rotations and poses (SO3, SE3) in JAX, smooth wherever beams get to.
+
+A pose is (R, p): R (..., 3, 3) turns body axes into space, p (..., 3) mm is where the body is. A
+twist is (..., 6): translation, then rotation vector, in body axes. Series in the squared angle have
+no division by zero at the unturned state, and derivatives of any order.
+
+Formulas: J. Sola, J. Deray, D. Atchuthan, A micro Lie theory for state estimation in robotics,
+2018.
+"""
+
+from collections.abc import Callable, Sequence
+from math import factorial
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from numpy.polynomial.chebyshev import Chebyshev
+from numpy.polynomial.polynomial import Polynomial
+
+import simulearn.compiled  # noqa: F401  double precision, before any array is made
+
+Array = jax.Array
+
+TERMS = 11  # of the series of sine and cosine: exact to a whole turn and more
+WIDEST = 2.4  # rad; logarithms are right up to here (an element's ends turn by less than half)
+
+
+class Pose(NamedTuple):
+    """Rotation (..., 3, 3) and position (..., 3) mm."""
+
+    R: Array
+    p: Array
+
+    def __matmul__(self, other: "Pose") -> "Pose":
+        """Return the pose of a body that has pose `other` as seen from this one."""
+        return Pose(self.R @ other.R, jnp.einsum("...ij,...j->...i", self.R, other.p) + self.p)
+
+    @property
+    def inverse(self) -> "Pose":
+        """The pose of space as seen from the body."""
+        turn = jnp.swapaxes(self.R, -1, -2)
+        return Pose(turn, -jnp.einsum("...ij,...j->...i", turn, self.p))
+
+
+def hat(w: Array) -> Array:
+    """Return the matrices (..., 3, 3) of the cross products with vectors (..., 3)."""
+    x, y, z = w[..., 0], w[..., 1], w[..., 2]
+    o = jnp.zeros_like(x)
+    rows = [jnp.stack(row, -1) for row in ([o, -z, y], [z, o, -x], [-y, x, o])]
+    return jnp.stack(rows, -2)
+
+
+def _series(first: int) -> tuple[float, ...]:
+    return tuple((-1) ** n / factorial(2 * n + first) for n in range(TERMS))
+
+
+SINE, COSINE, CUBIC = _series(1), _series(2), _series(3)  # sin t/t, (1-cos t)/t2, (t-sin t)/t3
+
+
+def _fitted(function: Callable[[np.ndarray], np.ndarray], top: float, degree: int) -> tuple[float, ...]:
+    """Return a polynomial of a function that is smooth from 0 to top but has a hole at 0."""
+    x = np.linspace(1e-6, top, 4001)
+    return tuple(Chebyshev.fit(x, function(x), degree, [0, top]).convert(kind=Polynomial).coef)
+
+
+def _angle_over_sine(x: np.ndarray) -> np.ndarray:
+    """Return t / sin t as a function of x = (1 - cos t) / 2."""
+    t = 2 * np.arcsin(np.sqrt(x))
+    return t / np.sin(t)
+
+
+def _inverse_left(x: np.ndarray) -> np.ndarray:
+    """Return (1 - t sin t / (2 (1 - cos t))) / t2 as a function of x = t2."""
+    t = np.sqrt(x)
+    return (1 - t * np.sin(t) / (2 * (1 - np.cos(t)))) / x
+
+
+LOGARITHM = _fitted(_angle_over_sine, (1 - np.cos(WIDEST)) / 2, 30)
+INVERSE = _fitted(_inverse_left, WIDEST**2, 12)
+
+
+def polynomial(coefficients: Sequence[float], x: Array) -> Array:
+    """Return a polynomial at x, its coefficients beginning with the constant."""
+    value = jnp.full_like(x, coefficients[-1])
+    for c in coefficients[-2::-1]:
+        value = value * x + c
+    return value
+
+
+def exp_so3(w: Array) -> Array:
+    """Return the rotations (..., 3, 3) of rotation vectors (..., 3)."""
+    square = (w * w).sum(-1)[..., None, None]
+    h = hat(w)
+    return jnp.eye(3) + polynomial(SINE, square) * h + polynomial(COSINE, square) * (h @ h)
+
+
+def exp_se3(x: Array) -> Pose:
+    """Return the poses that constant twists (..., 6) lead to."""
+    u, w = x[..., :3], x[..., 3:]
+    square = (w * w).sum(-1)[..., None, None]
+    h = hat(w)
+    hh = h @ h
+    a, b, c = (polynomial(k, square) for k in (SINE, COSINE, CUBIC))
+    left = jnp.eye(3) + b * h + c * hh
+    return Pose(jnp.eye(3) + a * h + b * hh, jnp.einsum("...ij,...j->...i", left, u))
+
+
+def log_se3(pose: Pose) -> Array:
+    """Return the constant twists (..., 6) that lead to poses turned by less than `WIDEST`."""
+    R, p = pose
+    x = (3 - jnp.trace(R, axis1=-2, axis2=-1)) / 4
+    axis = jnp.stack(
+        [R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], -1
+    )
+    w = axis / 2 * polynomial(LOGARITHM, x)[..., None]
+    h = hat(w)
+    square = (w * w).sum(-1)[..., None, None]
+    inverse = jnp.eye(3) - h / 2 + polynomial(INVERSE, square) * (h @ h)
+    return jnp.concatenate([jnp.einsum("...ij,...j->...i", inverse, p), w], -1)
+
+
+def adjoint(pose: Pose) -> Array:
+    """Return the matrices (..., 6, 6) that take twists in the body to twists in space."""
+    R, p = pose
+    zero = jnp.zeros_like(R)
+    top = jnp.concatenate([R, hat(p) @ R], -1)
+    return jnp.concatenate([top, jnp.concatenate([zero, R], -1)], -2)
+
+
+def inverse_right(x: Array) -> Array:
+    """Return how the logarithm (..., 6) changes with a twist at its end: (..., 6, 6).
+
+    The series of Bernoulli numbers, right to 1e-6 at a turn of one radian.
+    """
+    u, w = hat(x[..., :3]), hat(x[..., 3:])
+    zero = jnp.zeros_like(u)
+    ad = jnp.concatenate([jnp.concatenate([w, u], -1), jnp.concatenate([zero, w], -1)], -2)
+    two = ad @ ad
+    four = two @ two
+    series = two / 12 - four / 720 + four @ two / 30240 - four @ four / 1209600
+    return jnp.eye(6) + ad / 2 + series

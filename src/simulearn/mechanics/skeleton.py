@@ -1,0 +1,146 @@
+"""The flat grid as beam mechanics sees it: faces of joints, and halves of beams between them.
+
+A beam is two halves, each from the face of its joint to the middle. Seen from its joint every half
+looks alike: x into the beam, y to its left, z up. Which corner lies between which beams is found
+once by `grid.outline`; where it lies is computed here, differentiably in the joints' places.
+"""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.grid import Grid, beams_at, joint_outline
+from simulearn.material import Section
+from simulearn.mechanics.poses import Array
+
+Indices = NDArray[np.int64]
+
+
+class Skeleton(NamedTuple):
+    """How a grid hangs together; half h = end * B + beam.
+
+    Attributes:
+        ends: (2, B) joint of each half.
+        fixed: () index of the fixed joint.
+        before: (J, 4) half before each corner of a joint, counter-clockwise.
+        after: (J, 4) half after it.
+        parts: (J, 4) into how many parts the gap between them is divided.
+        part: (J, 4) which of them the corner bisects.
+        side: (2, B) side of its joint that each half leaves; from corner `side` to the next.
+    """
+
+    ends: Indices
+    fixed: NDArray[np.int64]
+    before: Indices
+    after: Indices
+    parts: Indices
+    part: Indices
+    side: Indices
+
+
+class Flat(NamedTuple):
+    """The flat grid in numbers, mm.
+
+    Attributes:
+        centre: (J, 3) mean of each joint's corners.
+        corners: (J, 8, 3) from the centre: bottom, then top.
+        area: (J,) mm2.
+        face: (2, B, 3) middle of each half's face, from its joint's centre.
+        frame: (2, B, 3, 3) axes of each half, in columns.
+        reach: (2, B) from where the axes meet to the face.
+        skew: (2, B) how far the face's left corner is ahead of its right one.
+        length: (B,) between the faces.
+        middle: (B, 3) of each beam.
+        section: (B, 4, 3) corners of the middle section in the axes of half 0, from its middle.
+    """
+
+    centre: Array
+    corners: Array
+    area: Array
+    face: Array
+    frame: Array
+    reach: Array
+    skew: Array
+    length: Array
+    middle: Array
+    section: Array
+
+
+def skeleton(grid: Grid, section: Section) -> Skeleton:
+    """Return the skeleton of a valid grid.
+
+    Raises:
+        InputError: a joint has no sound outline.
+    """
+    count = len(grid.beams)
+    shapes = [joint_outline(grid, section, k, ends) for k, ends in enumerate(beams_at(grid))]
+    half = lambda end: end[1] * count + end[0]  # noqa: E731
+    wedges = [shape.wedges for shape in shapes]
+    side = np.array(
+        [[shapes[j].sides[b, e] for b, j in enumerate(grid.beams[:, e])] for e in (0, 1)]
+    )
+    return Skeleton(
+        ends=grid.beams.T.copy(),
+        fixed=np.array(grid.fixed),
+        before=np.array([[half(w.before) for w in four] for four in wedges]),
+        after=np.array([[half(w.after) for w in four] for four in wedges]),
+        parts=np.array([[w.parts for w in four] for four in wedges]),
+        part=np.array([[w.part for w in four] for four in wedges]),
+        side=side,
+    )
+
+
+def flat(bones: Skeleton, joints: Array, section: Section) -> Flat:
+    """Return the flat grid whose axes meet at joints (J, 2)."""
+    width, up = section.width / 2, section.thickness / 2
+    start, end = joints[bones.ends[0]], joints[bones.ends[1]]
+    way = jnp.stack([end - start, start - end])
+    along = way / jnp.linalg.norm(way, axis=-1, keepdims=True)  # (2, B, 2)
+    angle = jnp.arctan2(way[..., 1], way[..., 0]).ravel()
+
+    first = angle[bones.before]
+    gap = jnp.mod(angle[bones.after] - first, 2 * jnp.pi)
+    gap = jnp.where(bones.before == bones.after, 2 * jnp.pi, gap) / bones.parts
+    bisector = first + gap * (bones.part + 0.5)
+    out = width / jnp.sin(gap / 2)
+    corner = out[..., None] * jnp.stack([jnp.cos(bisector), jnp.sin(bisector)], -1)  # (J, 4, 2)
+    middle = corner.mean(1)
+
+    joint, side = bones.ends, bones.side
+    right, left = corner[joint, side], corner[joint, (side + 1) % 4]
+    reach = ((right + left) / 2 * along).sum(-1)
+    skew = ((left - right) * along).sum(-1)
+    flatten = (
+        lambda xy, z=0.0: jnp.concatenate(  # noqa: E731
+            [xy, jnp.full_like(xy[..., :1], z)], -1
+        )
+    )
+    across = jnp.stack([-along[..., 1], along[..., 0]], -1)
+    upward = jnp.broadcast_to(jnp.array([0.0, 0.0, 1.0]), (*along.shape[:-1], 3))
+    frame = jnp.stack([flatten(along), flatten(across), upward], -1)
+    place = joints[joint] + reach[..., None] * along
+    local = corner - middle[:, None]
+    x = (skew[0] + skew[1]) / 4  # half the middle section's own skew
+    o = jnp.ones_like(x)
+    rows = [(-x, -1, -1), (x, 1, -1), (-x, -1, 1), (x, 1, 1)]
+    mid_section = jnp.stack(
+        [jnp.stack([a, b * width * o, c * up * o], -1) for a, b, c in rows], axis=1
+    )
+    return Flat(
+        centre=flatten(joints + middle),
+        corners=jnp.concatenate([flatten(local, -up), flatten(local, up)], 1),
+        area=jnp.abs(_cross(local[:, 2] - local[:, 0], local[:, 3] - local[:, 1])) / 2,
+        face=flatten(place - (joints + middle)[joint]),
+        frame=frame,
+        reach=reach,
+        skew=skew,
+        length=jnp.linalg.norm(way[0], axis=-1) - reach.sum(0),
+        middle=flatten(place.mean(0)),
+        section=mid_section,
+    )
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
