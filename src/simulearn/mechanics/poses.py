@@ -58,7 +58,9 @@ def _series(first: int) -> tuple[float, ...]:
 SINE, COSINE, CUBIC = _series(1), _series(2), _series(3)  # sin t/t, (1-cos t)/t2, (t-sin t)/t3
 
 
-def _fitted(function: Callable[[np.ndarray], np.ndarray], top: float, degree: int) -> tuple[float, ...]:
+def _fitted(
+    function: Callable[[np.ndarray], np.ndarray], top: float, degree: int
+) -> tuple[float, ...]:
     """Return a polynomial of a function that is smooth from 0 to top but has a hole at 0."""
     x = np.linspace(1e-6, top, 4001)
     return tuple(Chebyshev.fit(x, function(x), degree, [0, top]).convert(kind=Polynomial).coef)

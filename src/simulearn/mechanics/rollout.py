@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 
 from simulearn.material import Material
-from simulearn.mechanics.equilibrium import Elements, State, iterate
+from simulearn.mechanics.equilibrium import Elements, State, settle
 from simulearn.mechanics.poses import Array, Pose
 from simulearn.mechanics.section import Law, in_s, rest
 from simulearn.mechanics.skeleton import Flat, Skeleton
@@ -84,7 +84,7 @@ def rollout(
         before, last = carry
         s, gravity, fresh = now
         el = elements(law, bones, plan, ratio, load, s, gravity)
-        new, way = iterate(bones, el, _onward(before, last, 1 - fresh), tolerance, most)
+        new, way = settle(bones, el, _onward(before, last, 1 - fresh), tolerance, most)
         return (last, new), (new, way)
 
     begin = start(plan)

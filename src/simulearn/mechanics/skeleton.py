@@ -112,14 +112,9 @@ def flat(bones: Skeleton, joints: Array, section: Section) -> Flat:
     right, left = corner[joint, side], corner[joint, (side + 1) % 4]
     reach = ((right + left) / 2 * along).sum(-1)
     skew = ((left - right) * along).sum(-1)
-    flatten = (
-        lambda xy, z=0.0: jnp.concatenate(  # noqa: E731
-            [xy, jnp.full_like(xy[..., :1], z)], -1
-        )
-    )
     across = jnp.stack([-along[..., 1], along[..., 0]], -1)
     upward = jnp.broadcast_to(jnp.array([0.0, 0.0, 1.0]), (*along.shape[:-1], 3))
-    frame = jnp.stack([flatten(along), flatten(across), upward], -1)
+    frame = jnp.stack([_lifted(along), _lifted(across), upward], -1)
     place = joints[joint] + reach[..., None] * along
     local = corner - middle[:, None]
     x = (skew[0] + skew[1]) / 4  # half the middle section's own skew
@@ -129,17 +124,22 @@ def flat(bones: Skeleton, joints: Array, section: Section) -> Flat:
         [jnp.stack([a, b * width * o, c * up * o], -1) for a, b, c in rows], axis=1
     )
     return Flat(
-        centre=flatten(joints + middle),
-        corners=jnp.concatenate([flatten(local, -up), flatten(local, up)], 1),
+        centre=_lifted(joints + middle),
+        corners=jnp.concatenate([_lifted(local, -up), _lifted(local, up)], 1),
         area=jnp.abs(_cross(local[:, 2] - local[:, 0], local[:, 3] - local[:, 1])) / 2,
-        face=flatten(place - (joints + middle)[joint]),
+        face=_lifted(place - (joints + middle)[joint]),
         frame=frame,
         reach=reach,
         skew=skew,
         length=jnp.linalg.norm(way[0], axis=-1) - reach.sum(0),
-        middle=flatten(place.mean(0)),
+        middle=_lifted(place.mean(0)),
         section=mid_section,
     )
+
+
+def _lifted(xy: Array, z: float = 0.0) -> Array:
+    """Return points of the plane in space."""
+    return jnp.concatenate([xy, jnp.full_like(xy[..., :1], z)], -1)
 
 
 def _cross(a: Array, b: Array) -> Array:
