@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from simulearn.dataset import checksum, pack, read_dataset
+from simulearn.dataset.pack import _Writer
+from simulearn.dataset.packed import _positions
 from simulearn.dataset.trial import Job, read_trial
 from simulearn.errors import InputError
 
@@ -59,6 +61,16 @@ def test_every_array_says_its_axes_and_unit(file):
                 assert item.attrs["axes"], name
                 if item.dtype == np.int16 or "first" in name:
                     assert item.attrs["step"] > 0
+
+
+def test_a_grid_that_hangs_down_far_needs_wider_increments(file, tmp_path):
+    trials = [np.zeros((12, 4, 8, 3), np.float32) for _ in range(2)]
+    trials[1][1:] = -200.0
+    with h5py.File(tmp_path / "x.h5", "w") as stored:
+        _Writer(stored.create_group("g")).positions("joints", trials)
+        assert stored["g/joints_increments"].dtype == np.int32
+        found = _positions(stored["g"], "joints", np.array([0, 1]))
+    np.testing.assert_allclose(found, trials, atol=0.0026)
 
 
 def test_the_checksum_is_that_of_the_contents(file, tmp_path):

@@ -144,10 +144,10 @@ class _Writer:
         """Write positions as whole steps: the first frame, then the increments."""
         steps = np.rint(np.stack(trials).astype(np.float64) / POSITION).astype(np.int32)
         moves = np.diff(steps, axis=1)
-        if abs(moves).max(initial=0) > LARGEST:
-            raise InputError(f"{name}: a point moves by more than {LARGEST * POSITION:.0f} mm")
+        # A large grid may hang down by more than 16 bits hold (164 mm) in its first frame.
+        fits = abs(moves).max(initial=0) <= LARGEST
         self(f"{name}_first", steps[:, 0], POSITION)
-        self(f"{name}_increments", moves.astype(np.int16), POSITION)
+        self(f"{name}_increments", moves.astype(np.int16 if fits else np.int32), POSITION)
 
     def stress(self, trials: Sequence[NDArray[np.float32]]) -> None:
         """Write stresses as whole steps."""

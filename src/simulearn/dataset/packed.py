@@ -2,7 +2,7 @@
 
 Trials of one topology lie together, so that they are read as whole arrays. Positions are counted
 in steps of a few micrometres: those of the first frame, then the increments from frame to frame,
-which fit 16 bits however large the grid is.
+which fit 16 bits unless a grid hangs down by more than 164 mm at once.
 """
 
 import hashlib

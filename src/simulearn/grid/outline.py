@@ -46,35 +46,16 @@ class Outline:
 
 
 @dataclass(frozen=True)
-class Wedge:
-    """The part of a gap between two beams that a corner bisects.
-
-    Attributes:
-        before: the beam end before the gap, counter-clockwise.
-        after: the beam end after it.
-        parts: into how many the gap is divided.
-        part: which of them it is, 0 the nearest to `before`.
-    """
-
-    before: End
-    after: End
-    parts: int
-    part: int
-
-
-@dataclass(frozen=True)
 class JointOutline:
     """Corners of one joint.
 
     Attributes:
         corners: four (x, y), mm, in the order of `Outline.joints`.
         sides: the side that each beam end meets.
-        wedges: where each corner lies.
     """
 
     corners: list[Point]
     sides: dict[End, int]
-    wedges: "list[Wedge]"
 
     def face(self, end: End) -> tuple[Point, Point]:
         """Return the two corners (mm) that a beam end meets, right and left of the beam."""
@@ -153,25 +134,19 @@ def joint_outline(grid: Grid, section: Section, joint: int, meeting: list[End]) 
 
     half = section.width / 2
     corners: list[Point] = []
-    wedges: list[Wedge] = []
     side: dict[End, int] = {}
-    following = [end for _, end in leaving[1:] + leaving[:1]]
-    for (angle, leaves), after, gap, n in zip(
-        leaving, following, gaps, _parts(gaps, beams), strict=True
-    ):
+    for (angle, leaves), gap, n in zip(leaving, gaps, _parts(gaps, beams), strict=True):
         side[leaves] = len(corners) - 1  # begins at the corner before
         for k in range(n):
             bisector = angle + gap / n * (k + 0.5)
             reach = half / sin(gap / n / 2)
             corners.append((reach * cos(bisector), reach * sin(bisector)))
-            wedges.append(Wedge(leaves, after, n, k))
     first = min(range(4), key=lambda k: (atan2(*corners[k][::-1]) + TIE) % (2 * pi))
     corners = corners[first:] + corners[:first]
     _check(joint, corners)
     return JointOutline(
         [(x + u, y + v) for u, v in corners],
         {end: (k - first) % 4 for end, k in side.items()},
-        wedges[first:] + wedges[:first],
     )
 
 

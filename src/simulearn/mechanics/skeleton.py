@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.grid import Grid, beams_at, joint_outline
+from simulearn.grid.outline import TIE
 from simulearn.material import Section
 from simulearn.mechanics.poses import Array
 
@@ -68,28 +68,62 @@ class Flat(NamedTuple):
     section: Array
 
 
-def skeleton(grid: Grid, section: Section) -> Skeleton:
-    """Return the skeleton of a valid grid.
+def skeletons(beams: Indices, fixed: int, joints: NDArray[np.float64]) -> Skeleton:
+    """Return the skeletons of valid designs of one topology, stacked along T.
 
-    Raises:
-        InputError: a joint has no sound outline.
+    The rules are those of `grid.outline`, for many designs at once.
+
+    Args:
+        beams: (B, 2) joint indices.
+        fixed: index of the fixed joint.
+        joints: (T, J, 2) mm.
     """
-    count = len(grid.beams)
-    shapes = [joint_outline(grid, section, k, ends) for k, ends in enumerate(beams_at(grid))]
-    half = lambda end: end[1] * count + end[0]  # noqa: E731
-    wedges = [shape.wedges for shape in shapes]
-    side = np.array(
-        [[shapes[j].sides[b, e] for b, j in enumerate(grid.beams[:, e])] for e in (0, 1)]
-    )
-    return Skeleton(
-        ends=grid.beams.T.copy(),
-        fixed=np.array(grid.fixed),
-        before=np.array([[half(w.before) for w in four] for four in wedges]),
-        after=np.array([[half(w.after) for w in four] for four in wedges]),
-        parts=np.array([[w.parts for w in four] for four in wedges]),
-        part=np.array([[w.part for w in four] for four in wedges]),
-        side=side,
-    )
+    trials, count = joints.shape[:2]
+    many = len(beams)
+    whole = lambda *shape: np.zeros((trials, *shape), np.int64)  # noqa: E731
+    before, after, parts, part = (whole(count, 4) for _ in range(4))
+    side = whole(2, many)
+    row = np.arange(trials)
+    for joint in range(count):
+        ends, leaving = np.nonzero(joint == beams.T)
+        half = ends * many + leaving
+        way = joints[:, beams[leaving, 1 - ends]] - joints[:, joint, None]
+        angle = np.arctan2(way[..., 1], way[..., 0])
+        order = np.argsort(angle, axis=1)
+        angle = np.take_along_axis(angle, order, 1)
+        half, beam = half[order], leaving[order]
+        gap = np.diff(angle, axis=1, append=angle[:, :1] + 2 * np.pi)
+        divided = _divided(gap, beam, many)
+        behind = np.cumsum(divided, axis=1)
+        corner = np.arange(4)
+        wedge = (behind[:, None, :] <= corner[:, None]).sum(axis=-1)  # (T, 4)
+        pick = lambda x, at=wedge: np.take_along_axis(x, at, 1)  # noqa: E731
+        k = corner - (pick(behind) - pick(divided))
+        bisector = pick(angle) + pick(gap) / pick(divided) * (k + 0.5)
+        first = ((bisector + TIE) % (2 * np.pi)).argmin(axis=1)
+        roll = (corner + first[:, None]) % 4
+        before[:, joint] = pick(pick(half), roll)
+        after[:, joint] = pick(pick(np.roll(half, -1, axis=1)), roll)
+        parts[:, joint] = pick(pick(divided), roll)
+        part[:, joint] = pick(k, roll)
+        begins = (behind - divided - 1 - first[:, None]) % 4
+        side.reshape(trials, -1)[row[:, None], half] = begins
+    ends = np.broadcast_to(beams.T, (trials, 2, many))
+    return Skeleton(ends, np.full(trials, fixed), before, after, parts, part, side)
+
+
+def _divided(gap: NDArray[np.float64], beam: Indices, many: int) -> Indices:
+    """Return into how many parts each gap (T, n) is divided, so that there are four in all."""
+    following = np.roll(beam, -1, axis=1)
+    between = np.minimum(beam, following) * many + np.maximum(beam, following)
+    parts = np.ones(gap.shape, np.int64)
+    row = np.arange(len(gap))
+    for _ in range(4 - gap.shape[1]):
+        each = gap / parts
+        ties = each >= each.max(axis=1, keepdims=True) - TIE
+        rank = np.where(ties, parts * many**2 + between, np.iinfo(np.int64).max)
+        parts[row, rank.argmin(axis=1)] += 1
+    return parts
 
 
 def flat(bones: Skeleton, joints: Array, section: Section) -> Flat:
