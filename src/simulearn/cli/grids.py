@@ -12,16 +12,32 @@ from rich.table import Table
 
 from simulearn.cli.base import GridArgument, Json, app, err, grid_of, out, validated
 from simulearn.errors import InputError
-from simulearn.grid import Message, Validation, grid_to_dict, library, make, write_grid
+from simulearn.grid import (
+    Grid,
+    Message,
+    Validation,
+    grid_to_dict,
+    library,
+    make,
+    validate,
+    write_grid,
+)
+from simulearn.material import load_material
 
 if TYPE_CHECKING:
     from simulearn.simulate import Progress, Result
+
+ModelOption = Annotated[
+    str | None,
+    typer.Option(help="A learned model: default, paper, or its folder; its training ranges warn."),
+]
 
 
 @app.command()
 def simulate(
     grid: GridArgument,
-    engine: Annotated[str, typer.Option(help="Who answers: fea or calculix.")] = "fea",
+    engine: Annotated[str, typer.Option(help="Who answers: fea, calculix or learned.")] = "fea",
+    model: ModelOption = None,
     output: Annotated[
         list[Path] | None,
         typer.Option(
@@ -41,8 +57,8 @@ def simulate(
     files = output or []
     design = grid_of(grid)
     outputs.check(files, Path(grid))
-    answering = engine_of(engine)
-    for warning in validated(design).warnings:
+    answering = engine_of(engine, model)
+    for warning in _validated(design, model or "default" if engine == "learned" else None).warnings:
         err.print(f"[yellow]warning:[/] {escape(warning.message)}")
     with _progress(quiet=as_json) as progress:
         result = answering.simulate([design], progress)[0]
@@ -60,10 +76,10 @@ def simulate(
 
 
 @app.command("validate")
-def validate_(grid: GridArgument, as_json: Json = False) -> None:
+def validate_(grid: GridArgument, model: ModelOption = None, as_json: Json = False) -> None:
     """Check a grid: errors keep it from being simulated, warnings do not."""
     try:
-        report = validated(grid_of(grid))
+        report = _validated(grid_of(grid), model)
     except InputError as error:
         if as_json:  # machines get the same form, whatever is wrong
             print(json.dumps(Validation((Message("input", "grid", str(error)),), ()).to_dict()))
@@ -107,6 +123,16 @@ def library_(
         print(json.dumps(grid_to_dict(grid)))
 
 
+def _validated(grid: Grid, model: str | None) -> Validation:
+    """Return what validation says, by the training ranges of a model if one is named."""
+    if model is None:
+        return validated(grid)
+    from simulearn.learn.bundle import bundle_of
+
+    training = bundle_of(model).card.range
+    return validate(grid, load_material(grid.material), training=training)
+
+
 def _cells(text: str) -> tuple[int, int]:
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.isdecimal() and int(part) > 0 for part in parts):
@@ -143,7 +169,7 @@ def _table(result: "Result") -> Table:
             f"largest {fall} {abs(numbers['rise_mm']):.1f} mm (joint {numbers['joint_risen']}), "
             f"z from {numbers['lowest_mm']:.1f} to {numbers['highest_mm']:.1f} mm"
         ),
-        caption=f"{result.engine}, {result.seconds:.1f} s{work}; millimetres, +z up",
+        caption=f"{result.engine}, {_seconds(result.seconds)}{work}; millimetres, +z up",
         title_justify="left",
         caption_justify="left",
     )
@@ -155,3 +181,7 @@ def _table(result: "Result") -> Table:
         words = [f"{round(x, 1) + 0.0:.1f}" for x in places]
         table.add_row(f"fixed {k}" if k == result.grid.fixed else str(k), *words)
     return table
+
+
+def _seconds(seconds: float) -> str:
+    return f"{seconds:.1f} s" if seconds >= 0.95 else f"{1000 * seconds:.0f} ms"

@@ -22,8 +22,8 @@ import simulearn.compiled  # noqa: F401  double precision, before any array is m
 
 Array = jax.Array
 
-TERMS = 11  # of the series of sine and cosine: exact to a whole turn and more
-WIDEST = 2.4  # rad; logarithms are right up to here (an element's ends turn by less than half)
+TERMS = 9  # of the series of sine and cosine: exact to 1e-9 up to two radians
+WIDEST = 2.2  # rad; logarithms are right up to here (an element's ends turn by less than half)
 
 
 class Pose(NamedTuple):
@@ -78,8 +78,8 @@ def _inverse_left(x: np.ndarray) -> np.ndarray:
     return (1 - t * np.sin(t) / (2 * (1 - np.cos(t)))) / x
 
 
-LOGARITHM = _fitted(_angle_over_sine, (1 - np.cos(WIDEST)) / 2, 30)
-INVERSE = _fitted(_inverse_left, WIDEST**2, 12)
+LOGARITHM = _fitted(_angle_over_sine, (1 - np.cos(WIDEST)) / 2, 18)
+INVERSE = _fitted(_inverse_left, WIDEST**2, 10)
 
 
 def polynomial(coefficients: Sequence[float], x: Array) -> Array:

@@ -61,6 +61,12 @@ def elements(
     )
 
 
+def every_frame(law: Law, bones: Skeleton, plan: Flat, ratio: Array, load: Loads) -> Elements:
+    """Return the halves of a grid in frames 1 to 11, stacked."""
+    one = lambda s, gravity: elements(law, bones, plan, ratio, load, s, gravity)  # noqa: E731
+    return jax.vmap(one)(jnp.array(RELEASED), load.gravity)
+
+
 def start(plan: Flat) -> State:
     """Return the flat state."""
     eye = jnp.broadcast_to(jnp.eye(3), (len(plan.centre), 3, 3))
@@ -68,29 +74,29 @@ def start(plan: Flat) -> State:
 
 
 def rollout(
-    law: Law,
-    bones: Skeleton,
-    plan: Flat,
-    ratio: Array,
-    load: Loads,
-    tolerance: float = 0.02,
-    most: int = 25,
+    bones: Skeleton, plan: Flat, el: Elements, tolerance: float = 0.02, most: int = 60
 ) -> tuple[State, Array]:
-    """Return the states of frames 1 to 11, stacked, and the last motion in each (11,) mm."""
+    """Return the states of frames 1 to 11, stacked, and the last motion in each (11,) mm.
+
+    Args:
+        bones: how the grid hangs together.
+        plan: the flat grid.
+        el: halves in frames 1 to 11; see `every_frame`.
+        tolerance: of the last motion of an iteration, mm.
+        most: iterations in a frame. The first, when a large grid hangs down, takes the most.
+    """
 
     def frame(
-        carry: tuple[State, State], now: tuple[Array, Array, Array]
+        carry: tuple[State, State], now: tuple[Elements, Array]
     ) -> tuple[tuple[State, State], tuple[State, Array]]:
         before, last = carry
-        s, gravity, fresh = now
-        el = elements(law, bones, plan, ratio, load, s, gravity)
-        new, way = settle(bones, el, _onward(before, last, 1 - fresh), tolerance, most)
+        here, fresh = now
+        new, way = settle(bones, here, _onward(before, last, 1 - fresh), tolerance, most)
         return (last, new), (new, way)
 
     begin = start(plan)
     fresh = jnp.array([1.0] + [0.0] * (STEPS - 1) + [1.0])  # a jump in gravity: no extrapolation
-    along = (jnp.array(RELEASED), load.gravity, fresh)
-    _, (states, ways) = jax.lax.scan(frame, (begin, begin), along)
+    _, (states, ways) = jax.lax.scan(frame, (begin, begin), (el, fresh))
     return states, ways
 
 

@@ -7,6 +7,7 @@ strains and stiffnesses are polynomials in the released fraction s with fitted c
 
 from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -91,19 +92,21 @@ def rest(law: Law, length: Array, ratio: Array, held: Array, s: Any) -> tuple[Po
         [active * (1 + in_s(law.active, s)), zero, zero, zero, -sign * bend * active, zero], -1
     )
     tilt = jnp.stack([zero, zero, zero, zero, held * in_s(law.tilt, s), zero], -1)
-    arc = exp_se3(second)
     stiff = law.stiffness[0] + law.stiffness[1] * s + law.stiffness[2] * s * s
-    soft_passive = jnp.exp(-stiff)
-    soft_active = jnp.exp(-(stiff + law.stiffened[0] + law.stiffened[1] * s))
-    compliance = jnp.zeros((*length.shape, 6, 6))
-    for strain, part, soft, after in (
-        (first, passive, soft_passive, arc),
-        (second, active, soft_active, None),
-    ):
-        for at in GAUSS:
-            onward = exp_se3(strain * (1 - at))
-            onward = onward if after is None else onward @ after
-            turn = adjoint(onward.inverse)
-            weight = (part / 2)[..., None, None] * soft
-            compliance += jnp.einsum("...ij,...j,...kj->...ik", turn, weight[..., 0, :], turn)
-    return exp_se3(tilt) @ exp_se3(first) @ arc, compliance
+    soft = jnp.exp(-jnp.stack([stiff, stiff + law.stiffened[0] + law.stiffened[1] * s]))
+    # Both parts, and both Gauss points of each, at once: (2, 2, ..., 6).
+    strains = jnp.stack([first, second])
+    back = 1 - jnp.array(GAUSS).reshape(2, *[1] * first.ndim)
+    inner = exp_se3(strains[:, None] * back)
+    placed, arc, tilted = (exp_se3(x) for x in (first, second, tilt))
+    beyond = jax.tree.map(lambda x: jnp.stack([x, jnp.broadcast_to(_none(x), x.shape)]), arc)
+    onward = inner @ jax.tree.map(lambda x: x[:, None], beyond)
+    turn = adjoint(onward.inverse)
+    weight = jnp.stack([passive, active])[..., None] / 2 * soft.reshape(2, *[1] * zero.ndim, 6)
+    compliance = jnp.einsum("pg...ij,p...j,pg...kj->...ik", turn, weight, turn)
+    return tilted @ placed @ arc, compliance
+
+
+def _none(x: Array) -> Array:
+    """Return the rotation or the way of no motion."""
+    return jnp.eye(3) if x.shape[-2:] == (3, 3) else jnp.zeros(3)

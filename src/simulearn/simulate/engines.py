@@ -6,6 +6,7 @@ validation before, the Result after.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -34,7 +35,7 @@ class Engine:
     def simulate(self, grids: Sequence[Grid], progress: Progress | None = None) -> list[Result]:
         """Return the results of the grids, in their order; see `Simulator.simulate`."""
         # All grids are checked before the first is computed, for computing takes long.
-        checked = [_checked(grid) for grid in grids]
+        checked = [checked_grid(grid) for grid in grids]
         return [self._one(k, len(checked), *pair, progress) for k, pair in enumerate(checked)]
 
     def _one(
@@ -58,7 +59,7 @@ class Engine:
         )
 
 
-def _checked(grid: Grid) -> tuple[Grid, Material]:
+def checked_grid(grid: Grid) -> tuple[Grid, Material]:
     """Return the grid without its dangling beams, its fixed joint at the origin, and its material.
 
     Raises:
@@ -84,15 +85,35 @@ def _calculix() -> Simulator:
     return Engine("calculix", simulate_grid)
 
 
-ENGINES: dict[str, Callable[[], Simulator]] = {"fea": _fea, "calculix": _calculix}
+def _learned(model: Path | str = "default") -> Simulator:
+    from simulearn.simulate.learned import Learned
+
+    return Learned.of(model)
 
 
-def engine(name: str = "fea") -> Simulator:
+ENGINES: dict[str, Callable[[], Simulator]] = {
+    "fea": _fea,
+    "calculix": _calculix,
+    "learned": _learned,
+}
+
+
+def engine(name: str = "fea", model: Path | str | None = None) -> Simulator:
     """Return the engine of a name.
 
+    Args:
+        name: one of ENGINES.
+        model: for the engine "learned": a model's folder, or the name of one that comes with
+            SimuLearn; by default the one called "default".
+
     Raises:
-        InputError: no engine has that name, or what it needs is not installed.
+        InputError: no engine has that name, or what it needs is not installed; there is no such
+            model, or the engine takes none.
     """
     if name not in ENGINES:
         raise InputError(f'engine "{name}" is not known; known are {", ".join(ENGINES)}')
-    return ENGINES[name]()
+    if model is None:
+        return ENGINES[name]()
+    if name != "learned":
+        raise InputError(f'engine "{name}" takes no model; only "learned" does')
+    return _learned(model)

@@ -1,0 +1,214 @@
+"""Commands about printing: gcode, printers."""
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.table import Table
+
+from simulearn.cli.base import Json, app, err, grid_of, out
+from simulearn.errors import InputError
+from simulearn.files import replacing
+
+if TYPE_CHECKING:
+    from simulearn.fabricate import Job
+
+
+@app.command("gcode")
+def gcode_(
+    grids: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="GRID...", help="Grid files (.json) or names from the library; one bed for all."
+        ),
+    ],
+    printer: Annotated[
+        str, typer.Option(help="A printer's name (see simulearn printers), or a profile (.toml).")
+    ],
+    output: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "-o",
+            "--output",
+            help="A file to write (repeat for more); its ending picks what: .gcode .gco .g the "
+            "print; .png .pdf .svg a picture of its layers; .json the toolpath.",
+        ),
+    ] = None,
+    layer: Annotated[
+        int | None, typer.Option(min=1, help="Picture this layer alone, with its travels.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Make the file that prints a grid, and say how long it takes."""
+    from simulearn.fabricate import load_printer, prepare
+
+    files = output or []
+    _check(files, [Path(name) for name in grids])
+    names = [Path(name).stem for name in grids]
+    job = prepare([grid_of(name) for name in grids], load_printer(printer), names)
+    if layer is not None and layer > len(job.path.layers):
+        raise InputError(f"--layer is {layer}; the print has layers 1 to {len(job.path.layers)}")
+    job.gcode  # noqa: B018  (whatever is wrong with it keeps all files from being written)
+    for warning in job.warnings:
+        if not as_json:
+            err.print(f"[yellow]warning:[/] {escape(warning.message)}")
+    for path in files:
+        WRITERS[path.suffix.lower()](job, path, layer)
+    if as_json:
+        print(json.dumps({"files": [str(path) for path in files]} | _facts(job), allow_nan=False))
+        return
+    out.print(_table(job))
+    for path in files:
+        out.print(f"wrote {escape(str(path))}")
+
+
+@app.command("printers")
+def printers_(
+    name: Annotated[str | None, typer.Argument(help="A printer, to see its profile.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Write its profile here, to be edited.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """List the printers, or show the profile of one."""
+    from simulearn.fabricate import load_printer, printers, profile_text
+
+    if name is None:
+        if output is not None:
+            raise InputError("name the printer whose profile is to be written")
+        known = {title: load_printer(title) for title in printers()}
+        if as_json:
+            print(json.dumps({title: p.model_dump() for title, p in known.items()}))
+            return
+        table = Table("name", "printer", "bed, mm", "E", "nozzle, mm", box=None)
+        for title, p in known.items():
+            bed, nozzle = f"{p.bed.width:g} x {p.bed.depth:g}", p.print.get("nozzle", "")
+            table.add_row(title, p.title, bed, p.extruder.extrusion, str(nozzle))
+        out.print(table)
+        return
+    profile = load_printer(name)
+    text = profile_text(name)
+    if output is not None:
+        _check_place(output, [Path(name)])
+        with replacing(output) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+        if not as_json:
+            out.print(f"wrote {escape(str(output))}")
+    if as_json:
+        print(json.dumps(profile.model_dump()))
+    elif output is None:
+        print(text, end="")
+
+
+def _print(job: "Job", path: Path, layer: int | None) -> None:
+    from simulearn.fabricate import write_gcode
+
+    write_gcode(job.gcode, path)
+
+
+def _picture(job: "Job", path: Path, layer: int | None) -> None:
+    from simulearn.show import toolpath
+
+    if layer is None:
+        picture = toolpath.layers(job.path, _words(job))
+    else:
+        number = f"layer {layer} of {len(job.path.layers)}, {job.printer.title}"
+        picture = toolpath.layer(job.path, layer - 1, number)
+    with replacing(path) as temporary:
+        picture.savefig(temporary)
+
+
+def _data(job: "Job", path: Path, layer: int | None) -> None:
+    from simulearn.fabricate import toolpath_to_dict
+
+    data = toolpath_to_dict(job.path) | {"print": _facts(job)}
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(data, allow_nan=False) + "\n", encoding="utf-8")
+
+
+Writer = Callable[["Job", Path, int | None], None]
+WRITERS: dict[str, Writer] = {
+    ".gcode": _print,
+    ".gco": _print,
+    ".g": _print,
+    ".png": _picture,
+    ".pdf": _picture,
+    ".svg": _picture,
+    ".json": _data,
+}
+
+
+def _check(files: list[Path], grids: list[Path]) -> None:
+    """Make sure that all files can be written before anything is computed."""
+    for path in files:
+        if path.suffix.lower() not in WRITERS:
+            raise InputError(f"{path}: the ending is not one of {' '.join(WRITERS)}")
+        _check_place(path, grids)
+
+
+def _check_place(path: Path, sources: list[Path]) -> None:
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; name a file")
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: the folder {path.parent} does not exist")
+    for source in sources:
+        if source.exists() and path.exists() and path.samefile(source):
+            raise InputError(f"{path}: is what is read; name another file for the result")
+    try:
+        with TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+
+
+def _facts(job: "Job") -> dict[str, Any]:
+    """Return what machines want to know about a print."""
+    low, high = job.path.bounds.tolist()
+    return {
+        "printer": job.printer.name,
+        "material": job.material.name,
+        "grids": [
+            {"name": name, "joints": grid.joints.tolist()}
+            for name, grid in zip(job.names, job.grids, strict=True)
+        ],
+        "layers": len(job.path.layers),
+        "bounds_mm": [low, high],
+        **asdict(job.estimate),
+        "warnings": [asdict(warning) for warning in job.warnings],
+    }
+
+
+def _words(job: "Job") -> str:
+    from simulearn.fabricate.gcode import clock
+
+    needs = job.estimate
+    return f"{job.printer.title}, {clock(needs.seconds)}, {needs.filament_g:.1f} g"
+
+
+def _table(job: "Job") -> Table:
+    """Return what a print takes."""
+    from simulearn.fabricate.gcode import clock
+
+    needs, settings = job.estimate, job.settings
+    table = Table(
+        box=None,
+        show_header=False,
+        title=f"{', '.join(job.names)} on {job.printer.title}",
+        title_justify="left",
+    )
+    table.add_row(
+        "time", f"{clock(needs.seconds)}, after {clock(needs.heating_seconds)} of heating"
+    )
+    length = f"{needs.filament_mm / 1000:.2f} m of {settings.filament:g} mm"
+    table.add_row("filament", f"{length}, {needs.filament_cm3:.1f} cm3, {needs.filament_g:.1f} g")
+    bed = f"bed {settings.bed:g} C" if settings.bed else "bed off"
+    table.add_row("heat", f"nozzle {settings.temperature:g} C, {bed}")
+    table.add_row(
+        "layers", f"{settings.layers} of {settings.layer:g} mm, rows {settings.line:g} mm"
+    )
+    return table

@@ -1,0 +1,249 @@
+"""Commands about learned models: train, evaluate."""
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.markup import escape
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import TimeRemainingColumn as Remaining
+from rich.table import Table
+
+from simulearn.cli.base import Json, app, err, out
+from simulearn.errors import InputError
+from simulearn.files import replacing
+
+if TYPE_CHECKING:
+    from simulearn.learn.evaluate import Evaluation
+    from simulearn.learn.train import Row
+
+
+@app.command()
+def train(
+    config: Annotated[
+        str, typer.Argument(metavar="CONFIG", help="A TOML file, or paper or small.")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="The folder of the run; runs/NAME if not given."),
+    ] = None,
+    data: Annotated[
+        Path | None, typer.Option(help="A packed data set, other than the file says.")
+    ] = None,
+    search: Annotated[
+        int | None,
+        typer.Option(
+            min=1, metavar="RUNS", help="Search noise, penalty and data size in so many short runs."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Train a model; the same command goes on where it was stopped."""
+    from simulearn.dataset import read_dataset
+    from simulearn.learn.config import read_config
+
+    asked = read_config(config)
+    folder = output or Path("runs") / (asked.name + ("-search" if search else ""))
+    source = data or Path(asked.data)
+    if not source.is_file():
+        raise InputError(
+            f"{source}: there is no such data set; make one with `simulearn dataset generate` "
+            "and `pack`, or name another with --data"
+        )
+    folder_of(folder)
+    trials = read_dataset(source, "train")
+    if search:
+        from simulearn.learn.search import search as search_for
+        from simulearn.show.learning import search_picture
+
+        with _bar("runs", quiet=as_json) as tell:
+            figures = search_for(asked, trials, folder, search, tell)
+        with replacing(folder / "search.png") as temporary:
+            search_picture(figures).savefig(temporary)
+        if as_json:
+            print(json.dumps(figures))
+        else:
+            out.print(_best(figures))
+            out.print(f"wrote {escape(str(folder))}/search.png, search.csv, search.json")
+        return
+    from simulearn.learn.run import run
+    from simulearn.show.learning import loss_picture
+
+    def draw(rows: "Sequence[Row]", path: Path) -> None:
+        with replacing(path) as temporary:
+            loss_picture(rows, asked.name).savefig(temporary)
+
+    try:
+        with _epochs(quiet=as_json) as told:
+            bundle, rows = run(asked, trials, folder, told, draw)
+    except KeyboardInterrupt:
+        err.print("stopped; whole epochs are kept, and the same command goes on")
+        raise
+    if as_json:
+        figures = {"model": str(bundle.path), "validation_percent": rows[-1].validation_percent}
+        print(json.dumps({**figures, "epochs": len(rows), "loss": rows[-1].loss}))
+        return
+    out.print(
+        f"{len(rows)} epochs, mean vertex error of the trials set aside "
+        f"{rows[-1].validation_percent:.2f} % of dimension"
+    )
+    out.print(f"wrote {escape(str(bundle.path))} and {escape(str(folder))}/loss.png, loss.csv")
+
+
+@app.command()
+def evaluate(
+    model: Annotated[
+        str, typer.Argument(metavar="MODEL", help="A model's folder, paper, or default.")
+    ],
+    dataset: Annotated[Path, typer.Argument(metavar="DATASET", help="A packed data set (.h5).")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="A folder for figures and pictures.")
+    ] = None,
+    record: Annotated[
+        bool, typer.Option("--record", help="Keep the figures in the model's card.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Compare a model with the trials of a data set that are kept for testing."""
+    from simulearn.dataset import read_dataset
+    from simulearn.learn.bundle import bundle_of, tell_metrics
+    from simulearn.learn.evaluate import evaluate as evaluate_
+    from simulearn.learn.evaluate import for_testing
+
+    bundle = bundle_of(model)
+    trained = bundle.model
+    if output is not None:
+        folder_of(output)
+    data = read_dataset(dataset, stress=False)
+    batches = for_testing(data)
+    with _bar("trials", quiet=as_json) as tell:
+        found = evaluate_(trained, batches, tell)
+    figures = {
+        "model": bundle.card.name,
+        "kind": bundle.card.kind,
+        "dataset": data.config.name,
+        "sha256": data.sha256,
+        **found.errors.summary(),
+    }
+    if record:
+        tell_metrics(bundle, data.config.name, figures)
+    if output is not None:
+        _write(found, figures, output)
+    if as_json:
+        print(json.dumps(figures, allow_nan=False))
+        return
+    out.print(_table(figures))
+    if output is not None:
+        out.print(f"wrote {escape(str(output))}/figures.json, trials.csv, errors.png, grids.png")
+
+
+def folder_of(path: Path) -> None:
+    """Make a folder, or say why it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be made ({error.strerror})") from error
+
+
+def _write(found: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
+    from simulearn.show.learning import error_picture, grids_picture
+
+    with replacing(folder / "figures.json") as temporary:
+        temporary.write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
+    e = found.errors
+    lines = ["trial,dimension_mm,error_mm,error_percent,rotation_deg,gap_mm,motion_mm"]
+    rows = zip(
+        e.numbers, e.dimension, e.vertex[:, -1], e.percent[:, -1], e.rotation[:, -1], e.gap[:, -1],
+        e.motion, strict=True,
+    )  # fmt: skip
+    lines += [f"{row[0]}," + ",".join(f"{x:.4f}" for x in row[1:]) for row in rows]
+    with replacing(folder / "trials.csv") as temporary:
+        temporary.write_text("\n".join(lines) + "\n", "utf-8")
+    for name, picture in (("errors", error_picture), ("grids", grids_picture)):
+        with replacing(folder / f"{name}.png") as temporary:
+            picture(found, figures["model"]).savefig(temporary)
+
+
+def _table(figures: dict[str, Any]) -> Table:
+    table = Table(
+        box=None,
+        title=f"{figures['model']} on {figures['trials']} trials of {figures['dataset']}\n"
+        f"vertex error of the last frame: mean {figures['mean_percent']:.2f} % of dimension, "
+        f"median {figures['median_percent']:.2f}, 97th percentile {figures['p97_percent']:.2f}, "
+        f"worst {figures['worst_percent']:.2f} (trial {figures['worst_trial']})\n"
+        f"mean {figures['mean_mm']:.2f} mm, 97th percentile {figures['p97_mm']:.2f}, "
+        f"worst {figures['worst_mm']:.2f}; the corners move by {figures['motion_mm']:.1f}",
+        title_justify="left",
+    )
+    names = ("frame", "mean %", "97 % %", "mean mm", "joints turned deg", "gap mm")
+    for name in names:
+        table.add_column(name, justify="right")
+    for row in figures["frames"]:
+        values = [row[k] for k in row if k != "frame"]
+        table.add_row(str(row["frame"]), *(f"{x:.3f}" for x in values))
+    return table
+
+
+def _best(figures: dict[str, Any]) -> str:
+    best = figures["best"]
+    return (
+        f"{len(figures['runs'])} runs; best: noise {best['noise']:g}, penalty {best['penalty']:g}, "
+        f"{best['trials']} trials, vertex error {best['validation_percent']:.2f} %, "
+        f"gap {best['gap_mm']:.3f} mm"
+    )
+
+
+@contextmanager
+def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """Yield what is told (done, total)."""
+    if quiet or not err.is_terminal:
+        yield lambda done, total: None
+        return
+    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=err, transient=True) as bar:
+        task = bar.add_task(title, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
+def _epochs(quiet: bool) -> "Iterator[Callable[[Row | None, int, int], None]]":
+    """Yield what a run tells: a bar on a terminal, a line for each epoch elsewhere."""
+    if quiet:
+        yield lambda row, done, total: None
+        return
+    if not err.is_terminal:
+
+        def line(row: "Row | None", done: int, total: int) -> None:
+            if row is not None:
+                err.print(_words(row) + f", {row.seconds:.0f} s")
+
+        yield line
+        return
+    columns = (
+        TextColumn("updates"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[words]}"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        Remaining(elapsed_when_finished=False),
+    )
+    with Progress(*columns, console=err, transient=True, speed_estimate_period=600) as bar:
+        task = bar.add_task("updates", total=None, words="")
+
+        def tell(row: "Row | None", done: int, total: int) -> None:
+            bar.update(task, completed=done, total=total)
+            if row is not None:
+                bar.update(task, words=_words(row))
+
+        yield tell
+
+
+def _words(row: "Row") -> str:
+    return (
+        f"epoch {row.epoch}: loss {row.loss:.4g}, vertex error {row.validation_percent:.2f} % "
+        "of dimension"
+    )

@@ -1,0 +1,27 @@
+"""From grid to print: toolpaths, printers, estimates and G-code."""
+
+from simulearn.fabricate.estimate import Estimate
+from simulearn.fabricate.gcode import write_gcode
+from simulearn.fabricate.job import Job, prepare
+from simulearn.fabricate.printer import Printer, load_printer, printers, profile_text
+from simulearn.fabricate.settings import Settings, extrusion, settings_of
+from simulearn.fabricate.toolpath import ROLES, Bead, Layer, Toolpath, toolpath_to_dict
+
+__all__ = [
+    "ROLES",
+    "Bead",
+    "Estimate",
+    "Job",
+    "Layer",
+    "Printer",
+    "Settings",
+    "Toolpath",
+    "extrusion",
+    "load_printer",
+    "prepare",
+    "printers",
+    "profile_text",
+    "settings_of",
+    "toolpath_to_dict",
+    "write_gcode",
+]

@@ -1,0 +1,129 @@
+"""A print from beginning to end: grids and a printer in; toolpath, estimate and G-code out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.fabricate.bed import place
+from simulearn.fabricate.build import build
+from simulearn.fabricate.estimate import Estimate, durations_of, estimate
+from simulearn.fabricate.gcode import gcode
+from simulearn.fabricate.moves import Moves, moves_of
+from simulearn.fabricate.printer import Printer
+from simulearn.fabricate.settings import Settings, settings_of
+from simulearn.fabricate.toolpath import Toolpath
+from simulearn.grid import Grid, Message, clean, validate
+from simulearn.material import Material, load_material
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """A print.
+
+    Attributes:
+        grids: where they lie on the bed.
+        names: of the grids.
+        material: what they are printed of.
+        printer: on what.
+        settings: how.
+        path: the toolpath.
+        warnings: what to look out for.
+    """
+
+    grids: tuple[Grid, ...]
+    names: tuple[str, ...]
+    material: Material
+    printer: Printer
+    settings: Settings
+    path: Toolpath
+    warnings: tuple[Message, ...]
+
+    @cached_property
+    def moves(self) -> Moves:
+        """What the machine does."""
+        bed = self.printer.bed
+        return moves_of(self.path, self.settings, np.array(bed.low), bed.height)
+
+    @cached_property
+    def durations(self) -> NDArray[np.float64]:
+        """(m,) s, of each move."""
+        return durations_of(self.moves, self.printer)
+
+    @cached_property
+    def estimate(self) -> Estimate:
+        """Time and filament."""
+        return estimate(self.moves, self.settings, self.printer, self.durations)
+
+    @cached_property
+    def gcode(self) -> str:
+        """The file's text.
+
+        Raises:
+            InputError: the printer's start or end code is wrong.
+            ComputationError: a move leaves the printer's reach.
+        """
+        notes = [f"material = {self.material.name}"]
+        notes += [
+            f"grid {k} = {name}, {len(grid.joints)} joints, {len(grid.beams)} beams"
+            for k, (name, grid) in enumerate(zip(self.names, self.grids, strict=True))
+        ]
+        return gcode(
+            self.path,
+            self.moves,
+            self.durations,
+            self.estimate,
+            self.settings,
+            self.printer,
+            notes,
+            self.warnings,
+        )
+
+
+def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) -> Job:
+    """Return the print of one or more grids.
+
+    Args:
+        grids: designs of one material.
+        printer: on what they are printed.
+        names: what to call them in messages and in the file.
+
+    Raises:
+        InputError: a grid is not valid or larger than the bed, its material is unknown, or the
+            printer cannot print it.
+    """
+    if not grids:
+        raise InputError("there is no grid to print; give one or more")
+    names = tuple(names) or tuple(f"grid {k}" for k in range(len(grids)))
+    warnings: list[Message] = []
+    cleaned = []
+    materials = [load_material(grid.material) for grid in grids]
+    for grid, material, name in zip(grids, materials, names, strict=True):
+        said = f"{name}: " if len(grids) > 1 else ""
+        report = validate(grid, material)
+        if not report.valid:
+            more = f" (and {len(report.errors) - 1} more; `simulearn validate` shows all)"
+            first = report.errors[0].message
+            raise InputError(said + first + (more if len(report.errors) > 1 else ""))
+        warnings += [replace(m, message=said + m.message) for m in report.warnings]
+        cleaned.append(clean(grid)[0])
+    for name, material in zip(names, materials, strict=True):
+        if material != materials[0]:
+            raise InputError(
+                f"{names[0]} and {name} are of different materials "
+                f"({materials[0].name}, {material.name}); one file prints one material"
+            )
+    settings, overridden = settings_of(materials[0], printer)
+    if settings.layers * settings.layer > printer.bed.height:
+        raise InputError(
+            f"the print is {settings.layers * settings.layer:g} mm high; {printer.name} reaches "
+            f"{printer.bed.height:g} mm"
+        )
+    section = materials[0].section
+    placed = place(cleaned, section, printer)
+    path, told = build(placed, section, settings, printer.bed)
+    warnings += overridden + told
+    return Job(tuple(placed), names, materials[0], printer, settings, path, tuple(warnings))

@@ -1,0 +1,217 @@
+"""A printer as data: its bed, its limits, how it moves, and the code before and after a print.
+
+A profile is a TOML file. It may begin from another one (`base`) and name only what differs. What
+the actuation depends on comes from the material system; a profile may override it under [print],
+and is told off for it.
+"""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    TypeAdapter,
+    ValidationError,
+    field_validator,
+)
+
+from simulearn.errors import InputError
+from simulearn.files import read_text
+from simulearn.material.material import Print
+
+HERE = Path(__file__).parent / "printers"
+MOST_BASES = 8
+
+_Length = Annotated[float, Field(gt=0, le=1e4, allow_inf_nan=False)]
+_Rate = Annotated[float, Field(ge=0.01, le=1e6, allow_inf_nan=False)]
+_Speed = Annotated[float, Field(ge=10, le=1e5, allow_inf_nan=False)]
+_Acceleration = Annotated[float, Field(ge=1, le=1e6, allow_inf_nan=False)]
+_Degrees = Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+
+class Bed(_Table):
+    """Where the nozzle may go: mm, the origin in the lower left corner or in the middle."""
+
+    width: _Length
+    depth: _Length
+    height: _Length
+    origin: Literal["corner", "centre"] = "corner"
+
+    @property
+    def low(self) -> tuple[float, float]:
+        """The corner with the least x and y, mm."""
+        return (-self.width / 2, -self.depth / 2) if self.origin == "centre" else (0.0, 0.0)
+
+    @property
+    def high(self) -> tuple[float, float]:
+        """The corner with the greatest x and y, mm."""
+        return self.low[0] + self.width, self.low[1] + self.depth
+
+
+class Extruder(_Table):
+    """The filament's diameter (mm), how E is counted, and how far the nozzle lifts to travel."""
+
+    filament: Annotated[float, Field(ge=1.5, le=3.2, allow_inf_nan=False)] = 1.75
+    extrusion: Literal["absolute", "relative"] = "relative"
+    lift: Annotated[float, Field(ge=0.1, le=20, allow_inf_nan=False)] = 0.5
+
+
+class Temperatures(_Table):
+    """Hottest and coldest nozzle that may print, hottest bed (0: there is no heater), C."""
+
+    nozzle_most: _Degrees
+    nozzle_least: _Degrees = 170.0
+    bed_most: _Degrees = 0.0
+
+
+class Motion(_Table):
+    """How the machine moves; used for the estimate, nothing of it is written to the file.
+
+    Attributes:
+        speed: fastest in x and y, mm/min.
+        speed_z: fastest in z, mm/min; slower than the material asks for, it wins.
+        acceleration: while printing, mm/s2.
+        acceleration_travel: of travels, mm/s2.
+        acceleration_z: mm/s2.
+        acceleration_e: of retractions, mm/s2.
+        corner_speed: speed at which a right angle is taken, mm/s.
+    """
+
+    speed: _Speed
+    speed_z: _Speed
+    acceleration: _Acceleration
+    acceleration_travel: _Acceleration
+    acceleration_z: _Acceleration = 100.0
+    acceleration_e: _Acceleration = 1000.0
+    corner_speed: Annotated[float, Field(ge=0.1, le=1e3, allow_inf_nan=False)] = 8.0
+
+
+class Heating(_Table):
+    """How fast nozzle and bed warm up, C/s."""
+
+    nozzle: _Rate = 2.0
+    bed: _Rate = 0.4
+
+
+class Code(_Table):
+    """Code before and after the print; words in braces are filled in (see docs/gcode.md)."""
+
+    start: Annotated[str, Field(max_length=20000)]
+    end: Annotated[str, Field(max_length=20000)]
+    progress: bool = True
+
+
+class Printer(_Table):
+    """A printer."""
+
+    name: Annotated[str, Field(min_length=1, max_length=80)]
+    title: Annotated[str, Field(min_length=1, max_length=200)]
+    bed: Bed
+    extruder: Extruder = Extruder()
+    temperature: Temperatures
+    motion: Motion
+    heating: Heating = Heating()
+    print: dict[str, float | bool] = {}
+    code: Code
+
+    @field_validator("print", mode="before")
+    @classmethod
+    def _overrides(cls, given: Any) -> dict[str, Any]:
+        """Return the print settings given, each checked as the material's own is."""
+        if not isinstance(given, dict):
+            raise ValueError("is not a table of print settings")
+        checked = {}
+        for key, value in given.items():
+            if key not in Print.model_fields:
+                known = ", ".join(Print.model_fields)
+                raise ValueError(f"{key} is not a print setting; those are {known}")
+            setting = TypeAdapter(Print.model_fields[key].rebuild_annotation())
+            try:
+                checked[key] = setting.validate_python(value, strict=True)
+            except ValidationError as error:
+                raise ValueError(f"{key}: {error.errors()[0]['msg']}") from error
+        return checked
+
+
+def printers() -> list[str]:
+    """Return the names of the printers that come with SimuLearn."""
+    return sorted(path.stem for path in HERE.glob("*.toml"))
+
+
+def load_printer(name: str | Path) -> Printer:
+    """Return a printer by its name, or from a TOML file by its path.
+
+    Raises:
+        InputError: the name is unknown, or the file is not a valid profile.
+    """
+    path = _path(name)
+    try:
+        return Printer.model_validate(_with_base(path))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"]) or "profile"
+        raise InputError(f"{path}: {where}: {_reason(first)}") from error
+
+
+def profile_text(name: str) -> str:
+    """Return the TOML text of a printer that comes with SimuLearn, to be edited."""
+    return read_text(_path(name))
+
+
+def _path(name: str | Path) -> Path:
+    path = Path(name)
+    if path.suffix == ".toml":
+        return path
+    if str(name) not in printers():
+        known = ", ".join(printers())
+        raise InputError(f'printer "{name}" is not known; known are {known}, or give a .toml file')
+    return HERE / f"{name}.toml"
+
+
+def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
+    """Return the tables of a profile over those that it begins from."""
+    if depth > MOST_BASES:
+        raise InputError(f"{path}: more than {MOST_BASES} profiles begin from one another")
+    try:
+        data = tomllib.loads(read_text(path))
+    except ValueError as error:  # also of a number of thousands of digits
+        raise InputError(f"{path}: is not valid TOML: {error}") from error
+    except RecursionError as error:
+        raise InputError(f"{path}: is not a profile; its tables are nested too deeply") from error
+    base = data.pop("base", None)
+    if base is None:
+        return data
+    if not isinstance(base, str):
+        raise InputError(f"{path}: base: is not the name of a printer or the path of its file")
+    beside = path.parent / base
+    below = _with_base(beside if beside.suffix == ".toml" else _path(base), depth + 1)
+    return _merged(below, data)
+
+
+def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    both = dict(below)
+    for key, value in above.items():
+        old = both.get(key)
+        inner = isinstance(old, dict) and isinstance(value, dict)
+        both[key] = _merged(old, value) if inner else value  # type: ignore[arg-type]
+    return both
+
+
+def _reason(error: Any) -> str:
+    """Return one of pydantic's errors with what was given."""
+    if error["type"] == "extra_forbidden":
+        return "is not a key of a printer profile"
+    if error["type"] == "missing":
+        return "is missing"
+    if error["type"] == "value_error":
+        return str(error["ctx"]["error"])
+    shown = repr(error["input"])
+    shown = shown if len(shown) <= 40 else shown[:37] + "..."
+    return f"is {shown}; {error['msg'][0].lower()}{error['msg'][1:]}"

@@ -1,0 +1,247 @@
+"""With what a print is made: the material's settings, what a profile overrides, and a warning.
+
+The curl of a beam was measured with the material's line, speed, flow, temperature and fan. A
+printer may need others, but who changes them should know that the measured curl no longer holds.
+"""
+
+from dataclasses import dataclass
+from math import floor, pi
+
+from simulearn.errors import InputError
+from simulearn.fabricate.printer import Printer
+from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT
+from simulearn.grid import Message
+from simulearn.material import Material
+from simulearn.material.material import Print
+
+# Settings of the machine rather than of the material: a profile changes them without a word.
+HARMLESS = {"speed_skirt", "speed_travel", "speed_z", "skirt_distance", "retraction"}
+HARMLESS |= {"retraction_speed"}
+UNITS = {
+    "layer": " mm",
+    "line_width": " mm",
+    "nozzle": " mm",
+    "temperature": " C",
+    "bed": " C",
+    "speed_fill": " mm/min",
+    "speed_shell": " mm/min",
+}
+# What any printer could be asked to do; beyond lies a slip of the pen.
+RANGES = {
+    "layer": (0.02, 2.0),
+    "line_width": (0.1, 4.0),
+    "nozzle": (0.1, 4.0),
+    "temperature": (1.0, 600.0),
+    "bed": (0.0, 300.0),
+    "speed_fill": (30.0, 60000.0),
+    "speed_shell": (30.0, 60000.0),
+    "speed_skirt": (30.0, 60000.0),
+    "speed_travel": (30.0, 60000.0),
+    "speed_z": (10.0, 60000.0),
+    "flow_active": (0.2, 3.0),
+    "flow_passive": (0.2, 3.0),
+    "flow_joint": (0.2, 3.0),
+    "shell_overlap": (0.0, 1.0),
+    "infill": (0.05, 1.0),
+    "skirt_distance": (0.0, 500.0),
+    "retraction": (0.0, 20.0),
+    "retraction_speed": (10.0, 60000.0),
+}
+WIDEST = 2.0  # a bead wider than so many nozzles tears
+ROUNDING = 1e-6
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Everything that a toolpath and its file are made with; mm, mm/min, C.
+
+    Attributes:
+        layers: number of layers; the lower half of them is the bottom half of a beam.
+        layer: thickness of each.
+        line: width of a row; rows tile the width of a beam.
+        shells: how many rows on each side run along the outline.
+        overlap: by how much a stroke of the fill reaches beyond its end.
+        infill: share of the rows that is filled.
+        nozzle: width of the opening.
+        filament: diameter.
+        temperature: of the nozzle.
+        bed: of the bed, 0 being off.
+        speed: of the beads, by role.
+        flow: extruded volume over that of a rectangular bead, by role.
+        travel: speed of travels.
+        speed_z: of lifts.
+        lift: how far the nozzle lifts to travel.
+        retraction: how much filament is drawn back to travel.
+        retraction_speed: how fast.
+        skirt_distance: of the skirt from the grids.
+        fan_first_layer: whether the fan blows on the first layer.
+        fan: whether it blows on the others.
+        density: of the filament, g/mm3.
+    """
+
+    layers: int
+    layer: float
+    line: float
+    shells: int
+    overlap: float
+    infill: float
+    nozzle: float
+    filament: float
+    temperature: float
+    bed: float
+    speed: dict[str, float]
+    flow: dict[str, float]
+    travel: float
+    speed_z: float
+    lift: float
+    retraction: float
+    retraction_speed: float
+    skirt_distance: float
+    fan_first_layer: bool
+    fan: bool
+    density: float
+
+    @property
+    def filament_area(self) -> float:
+        """Section of the filament, mm2."""
+        return pi * self.filament**2 / 4
+
+
+def extrusion(length: float, width: float, height: float, filament: float) -> float:
+    """Return how much filament a rectangular bead takes, mm.
+
+    Args:
+        length: of the bead, mm.
+        width: of the bead, mm.
+        height: of the bead, mm.
+        filament: diameter, mm.
+    """
+    return length * width * height / (pi * filament**2 / 4)
+
+
+def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Message]]:
+    """Return how a material is printed on a printer, and warnings of what departs from it.
+
+    Raises:
+        InputError: the printer cannot print this material, or a setting makes no sense.
+    """
+    overrides = printer.print
+    ours = Print.model_validate(material.print.model_dump() | overrides)
+    for key, (least, most) in RANGES.items():
+        if not least <= getattr(ours, key) <= most:
+            raise InputError(
+                f"{_where(printer, key)}{key} is {getattr(ours, key):g}{UNITS.get(key, '')}; "
+                f"it lies between {least:g} and {most:g}"
+            )
+    warnings = [
+        Message(
+            "override",
+            f"print.{key}",
+            f"{printer.name} prints with {key} {_shown(value)}{UNITS.get(key, '')} instead of "
+            f"{_shown(getattr(material.print, key))}; the curl was measured with the latter",
+        )
+        for key, value in overrides.items()
+        if key not in HARMLESS and getattr(material.print, key) != value
+    ]
+    _temperatures(printer, ours)
+    layers = _layers(material, ours)
+    rows = round(material.section.width / ours.line_width)
+    line = material.section.width / max(rows, 1)
+    shells = max(1, floor(material.section.shell / line + ROUNDING))
+    if rows < 2 * shells + 2:
+        raise InputError(
+            f"line_width is {ours.line_width:g} mm; a beam of {material.section.width:g} mm needs "
+            f"{2 * shells + 2} rows or more, so a line of at most "
+            f"{material.section.width / (2 * shells + 2):.2f} mm"
+        )
+    if ours.nozzle > line + ROUNDING:
+        raise InputError(
+            f"the nozzle of {printer.name} is {ours.nozzle:g} mm, wider than a shell row of "
+            f"{line:.3g} mm; fit a nozzle of at most {line:.3g} mm and say so under [print]"
+        )
+    if line > WIDEST * ours.nozzle + ROUNDING:
+        raise InputError(
+            f"the nozzle of {printer.name} is {ours.nozzle:g} mm, too narrow for a line of "
+            f"{line:.3g} mm; fit one of {line / WIDEST:.3g} to {line:.3g} mm"
+        )
+    if ours.layer > ours.nozzle:
+        raise InputError(
+            f"a layer of {ours.layer:g} mm is thicker than the nozzle of {ours.nozzle:g} mm is "
+            f"wide; it would not stick to the one below"
+        )
+    warnings += _too_fast(printer, ours)
+    speed = {SKIRT: ours.speed_skirt, SHELL: ours.speed_shell}
+    flow = {SKIRT: ours.flow_active, SHELL: ours.flow_active, ACTIVE: ours.flow_active}
+    return (
+        Settings(
+            layers=layers,
+            layer=ours.layer,
+            line=line,
+            shells=shells,
+            overlap=ours.shell_overlap * line,
+            infill=ours.infill,
+            nozzle=ours.nozzle,
+            filament=printer.extruder.filament,
+            temperature=ours.temperature,
+            bed=ours.bed,
+            speed=speed | dict.fromkeys((ACTIVE, PASSIVE, JOINT), ours.speed_fill),
+            flow=flow | {PASSIVE: ours.flow_passive, JOINT: ours.flow_joint},
+            travel=min(ours.speed_travel, printer.motion.speed),
+            speed_z=min(ours.speed_z, printer.motion.speed_z),
+            lift=printer.extruder.lift,
+            retraction=ours.retraction,
+            retraction_speed=ours.retraction_speed,
+            skirt_distance=ours.skirt_distance,
+            fan_first_layer=ours.fan_first_layer,
+            fan=ours.fan,
+            density=material.gravity.density * 1e6,
+        ),
+        warnings,
+    )
+
+
+def _temperatures(printer: Printer, ours: Print) -> None:
+    least, most = printer.temperature.nozzle_least, printer.temperature.nozzle_most
+    if not least <= ours.temperature <= most:
+        raise InputError(
+            f"{_where(printer, 'temperature')}temperature is {ours.temperature:g} C; the nozzle "
+            f"of {printer.name} prints at {least:g} to {most:g} C"
+        )
+    if ours.bed > printer.temperature.bed_most:
+        raise InputError(
+            f"{_where(printer, 'bed')}bed is {ours.bed:g} C; the bed of {printer.name} reaches "
+            f"at most {printer.temperature.bed_most:g} C"
+        )
+
+
+def _layers(material: Material, ours: Print) -> int:
+    """Return the number of layers; each half of a beam is a whole number of them."""
+    half = material.section.thickness / 2
+    count = round(half / ours.layer)
+    if not count or abs(count * ours.layer - half) > 1e-3 * half:
+        raise InputError(
+            f"layers of {ours.layer:g} mm do not fill half a beam of {half:g} mm; "
+            f"{half / max(count, 1):.4g} mm would"
+        )
+    return 2 * count
+
+
+def _too_fast(printer: Printer, ours: Print) -> list[Message]:
+    return [
+        Message(
+            "too-fast",
+            f"print.{key}",
+            f"{printer.name} moves at most {printer.motion.speed:g} mm/min and will print slower "
+            f"than {key} {getattr(ours, key):g}; the curl was measured with the latter",
+        )
+        for key in ("speed_fill", "speed_shell")
+        if getattr(ours, key) > printer.motion.speed
+    ]
+
+
+def _where(printer: Printer, key: str) -> str:
+    return f"{printer.name}: print." if key in printer.print else "the material's "
+
+
+def _shown(value: float | bool) -> str:
+    return ("off", "on")[value] if isinstance(value, bool) else f"{value:g}"

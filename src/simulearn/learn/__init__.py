@@ -1,0 +1,1 @@
+"""Learned simulators: models, their training, their evaluation, and their bundles."""

@@ -1,0 +1,62 @@
+"""How far a grid of beams is off the true shape, to first order, without solving for its own.
+
+At the true poses the beams are not quite in balance. One Gauss-Newton step tells where they would
+go; that way, with the warping that is missed, is the error of a corner. It can be computed for any
+parameters, however bad, and costs no iteration, so it is what models are fitted by.
+"""
+
+import jax
+import jax.numpy as jnp
+
+from simulearn.learn import local
+from simulearn.learn.shapes import Parameters, corrected, plain
+from simulearn.learn.truth import Truth
+from simulearn.mechanics.corners import local_corners
+from simulearn.mechanics.equilibrium import State, balance, solve
+from simulearn.mechanics.poses import Array
+from simulearn.mechanics.rollout import RELEASED, Loads, elements
+
+SMALL = 3e-4  # squared % of dimension, below which errors count by their square
+
+
+def misses(
+    parameters: Parameters, load: Loads, trial: Truth, frame: Array, begun: State, twist: Array
+) -> tuple[Array, Array]:
+    """Return the errors of the corners of joints (J, 8, 3) and middle sections (B, 4, 3), mm.
+
+    Args:
+        parameters: law, and network if there is one.
+        load: weights.
+        trial: one trial.
+        frame: 0 to 10, for frames 1 to 11.
+        begun: what the law alone gives in that frame; looked at by the network.
+        twist: (2, B, 6) of the halves there.
+    """
+    bones, plan, ratio = trial.bones, trial.plan, trial.ratio
+    s, gravity = jnp.array(RELEASED)[frame], load.gravity[frame]
+    el, told = elements(parameters.law, bones, plan, ratio, load, s, gravity), plain(len(ratio))
+    if parameters.network is not None:
+        seen = local.look(bones, plan, ratio, begun, twist, s, gravity)
+        told = local.answer(parameters.network, bones, seen)
+        el = corrected(el, told)
+    at = jax.tree.map(lambda x: x[frame], trial.state)
+    joints, middles = solve(bones, balance(bones, el, at))
+    own = local_corners(parameters.law, bones, plan, s, told.face, told.middle)
+
+    def off(turn: Array, step: Array, true: Array, told: Array) -> Array:
+        moved = jnp.cross(step[:, None, 3:], true) + told - true
+        return step[:, None, :3] + jnp.einsum("kij,kcj->kci", turn, moved)
+
+    missed = off(at.joints.R, joints, trial.joints[frame], own[0])
+    missed = missed.at[bones.fixed, :4].set(0.0)  # the held corners
+    return missed, off(at.middles.R, middles, trial.middles[frame], own[1])
+
+
+def loss(joints: Array, middles: Array, size: Array, s: Array) -> Array:
+    """Return the loss of a trial's errors: about the mean vertex error in % of its dimension.
+
+    Sections at the ends of beams are faces of joints, so joints count twice. Early frames, whose
+    errors are smaller, count more.
+    """
+    soft = lambda e: jnp.sqrt((e**2).sum(-1) * (100 / size) ** 2 + SMALL).mean()  # noqa: E731
+    return (2 * soft(joints) + soft(middles)) / 3 / (0.3 + s)

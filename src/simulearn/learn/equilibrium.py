@@ -1,0 +1,196 @@
+"""The models that solve for equilibrium: `beams`, mechanics alone, and `equilibrium`, the default.
+
+What they answer is a minimum of the energy of a grid of beams between joints; see `learn.shapes`.
+"""
+
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache, partial
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.learn import local
+from simulearn.learn.model import Designs, Frames
+from simulearn.learn.shapes import Parameters, Shapes, shapes
+from simulearn.material import Material, load_material
+from simulearn.mechanics.corners import local_corners, placed
+from simulearn.mechanics.rollout import loads, start
+from simulearn.mechanics.section import first_guess
+from simulearn.mechanics.skeleton import Flat, Skeleton, flat, skeletons
+
+CONVERGED = 0.05  # mm, the last motion of an iteration at most
+AT_ONCE = 8  # designs in one call of a kernel
+THREADS = 2
+
+Weights = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A model that solves for equilibrium; without a network it is mechanics alone.
+
+    Attributes:
+        parameters: fitted.
+        sizes: width, message and rounds of the networks.
+        trust: coefficients of the error estimate; see `bound`.
+        kind: "equilibrium" or "beams".
+    """
+
+    parameters: Parameters
+    sizes: tuple[int, int, int] = (64, 16, 2)
+    trust: NDArray[np.float64] | None = None
+    kind: str = "equilibrium"
+    material: str = field(default="pla-hot-water")
+
+    @cached_property
+    def _parameters(self) -> Parameters:
+        return jax.tree.map(jnp.asarray, self.parameters)
+
+    def rollout(self, designs: Designs) -> Frames:
+        """Return the twelve frames of designs of one topology; see `learn.model.Model`."""
+        count = len(designs)
+        bones = skeletons(designs.beams, designs.fixed, designs.flat)
+        kernel = partial(_kernel(self.material, self.kind), self._parameters)
+        size = AT_ONCE if count >= AT_ONCE else 1
+        parts = [np.arange(a, a + size) % count for a in range(0, count, size)]
+
+        def run(which: NDArray[np.int64]) -> Any:
+            take = lambda x: x[which]  # noqa: E731
+            some = Skeleton(*map(take, bones))
+            return jax.tree.map(
+                np.asarray, kernel(some, designs.flat[which], designs.actuators[which])
+            )
+
+        if len(parts) > 1:
+            with ThreadPoolExecutor(THREADS) as pool:
+                told = list(pool.map(run, parts))
+        else:
+            told = [run(which) for which in parts]
+        joined: Shapes = jax.tree.map(lambda *x: np.concatenate(x)[:count], *told)
+        whole = (joined.joints, joined.sections)
+        good = (joined.way < CONVERGED) & np.all(
+            [np.isfinite(x).reshape(count, -1).all(axis=1) for x in whole], axis=0
+        )
+        joints, sections = map(np.asarray, whole)
+        stress = None if joined.stress is None else np.asarray(joined.stress)
+        return Frames(joints, sections, stress, self.bound(designs, joined), good)
+
+    def bound(self, designs: Designs, told: Shapes) -> NDArray[np.float64] | None:
+        """Return the error that nine designs of ten stay below: (T,) mm, mean over the corners.
+
+        It grows with what the network had to correct, with strain, and with size.
+        """
+        if self.trust is None:
+            return None
+        return np.exp(signs_of_error(designs, told) @ self.trust)
+
+    def config(self) -> dict[str, Any]:
+        """Return the architecture."""
+        width, message, rounds = self.sizes
+        return {"width": width, "message": message, "rounds": rounds, "material": self.material}
+
+    def to_arrays(self) -> Weights:
+        """Return law, networks and error estimate by name."""
+        arrays = {name: np.asarray(x) for name, x in _named(self.parameters)}
+        if self.trust is not None:
+            arrays["trust"] = np.asarray(self.trust)
+        return arrays
+
+    @classmethod
+    def from_arrays(
+        cls, config: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+    ) -> "Equilibrium":
+        """Return the model of a bundle.
+
+        Raises:
+            InputError: a weight is missing, too many, or has the wrong shape.
+        """
+        sizes, key = (config["width"], config["message"], config["rounds"]), jax.random.key(0)
+        network = any(name.startswith("network.") for name in arrays)
+        stress = any(name.startswith("stress.") for name in arrays)
+        blank = Parameters(
+            first_guess(),
+            local.weights(key, local.CORRECTIONS, *sizes) if network else None,
+            local.weights(key, local.STRESSES, *sizes) if stress else None,
+        )
+        expected = dict(_named(blank))
+        for name, value in expected.items():
+            if name not in arrays:
+                raise InputError(f"weight {name} is missing")
+            if arrays[name].shape != value.shape:
+                raise InputError(
+                    f"weight {name} has the shape {arrays[name].shape}, not {value.shape}"
+                )
+        if extra := arrays.keys() - expected.keys() - {"trust"}:
+            raise InputError(f"weight {min(extra)} does not belong to this architecture")
+        tree = jax.tree.structure(blank)
+        dtype = lambda name, x: np.asarray(arrays[name], x.dtype)  # noqa: E731
+        filled = jax.tree.unflatten(tree, [dtype(n, x) for n, x in expected.items()])
+        trust = arrays.get("trust")
+        return cls(
+            filled,
+            sizes,
+            None if trust is None else np.asarray(trust, np.float64),
+            "equilibrium" if network else "beams",
+            str(config["material"]),
+        )
+
+
+def signs_of_error(designs: Designs, told: Shapes) -> NDArray[np.float64]:
+    """Return what the error estimate goes by: (T, 5)."""
+    size = designs.dimensions
+    apart = np.log(np.maximum(told.apart, 1e-3))
+    strain = np.log(np.maximum(told.strain, 1e-3))
+    return np.stack([np.ones_like(size), apart, strain, np.log(size / 90), apart**2], axis=1)
+
+
+def _named(parameters: Parameters) -> list[tuple[str, Any]]:
+    """Return the arrays of parameters with their names, in the order of the tree."""
+    pairs = jax.tree_util.tree_flatten_with_path(parameters)[0]
+    return [(".".join(str(k).strip(".[]") for k in path), x) for path, x in pairs]
+
+
+@lru_cache
+def _kernel(material: str, kind: str) -> Any:
+    """Return the compiled function: parameters, skeletons, joints, ratios -> all frames."""
+    del kind  # two kinds have parameters of other structures, and kernels of their own
+    data = load_material(material)
+    load = loads(data)
+
+    @jax.jit
+    def kernel(parameters: Parameters, bones: Skeleton, joints: Any, ratio: Any) -> Shapes:
+        one = partial(_whole, parameters, load, data)
+        return jax.vmap(one)(bones, joints, ratio)
+
+    return kernel
+
+
+def _whole(
+    parameters: Parameters, load: Any, data: Material, bones: Skeleton, joints: Any, ratio: Any
+) -> Shapes:
+    """Return all twelve frames of a design."""
+    from simulearn.learn import stresses
+
+    plan = flat(bones, joints, data.section)
+    later = shapes(parameters, bones, plan, ratio, load, data)
+    at, sections = first_frame(parameters, bones, plan)
+    before = lambda x, y: jnp.concatenate([x[None], y])  # noqa: E731
+    stress = later.stress
+    if stress is not None:
+        printed = stresses.printed(data, plan, ratio)
+        stress = before(stresses.in_space(bones, plan, start(plan), printed), stress)
+    both = before(at, later.joints), before(sections, later.sections)
+    return later._replace(joints=both[0], sections=both[1], stress=stress)
+
+
+def first_frame(parameters: Parameters, bones: Skeleton, plan: Flat) -> Any:
+    """Return the corners of the flat grid: of joints, of sections."""
+    zero = jnp.zeros((*bones.ends.shape, 4, 3))
+    own = local_corners(parameters.law, bones, plan, jnp.array(0.0), zero, zero)
+    return placed(bones, plan, start(plan), *own)

@@ -1,0 +1,174 @@
+"""Beam mechanics, corrected by a small network, in equilibrium again: frames from a design.
+
+The fitted section alone gives a first shape of every frame. The network looks at it and tells how
+rest, stiffness and sections differ; with that the grid is brought into equilibrium once more, all
+frames at a time. Nothing can come apart, and frame 0 is the design.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+
+from simulearn.learn import local, stresses
+from simulearn.material import Material
+from simulearn.mechanics.corners import local_corners, placed
+from simulearn.mechanics.equilibrium import Elements, State, settle, twists
+from simulearn.mechanics.poses import Array, exp_se3
+from simulearn.mechanics.rollout import RELEASED, Loads, every_frame, rollout
+from simulearn.mechanics.section import Law
+from simulearn.mechanics.skeleton import Flat, Skeleton
+
+TOLERANCE = 0.02  # mm, of the last motion; what is left after it is far less
+MOST = 25  # iterations
+
+
+class Parameters(NamedTuple):
+    """All that is fitted: the section, the network that corrects it, and the one for stresses."""
+
+    law: Law
+    network: local.Weights | None = None
+    stress: local.Weights | None = None
+
+
+class Shapes(NamedTuple):
+    """Frames 1 to 11, stacked.
+
+    Attributes:
+        joints: (11, J, 8, 3) corners, mm.
+        sections: (11, B, 3, 4, 3) corners, mm.
+        stress: (11, B, 4, 4, 6) MPa, or None if there is no network for it.
+        way: () the last motion of an iteration, mm; large if there is no equilibrium.
+        apart: () mean distance between the joints of the first shape and the last, last frame, mm.
+        strain: () root of the mean square turn of the halves from rest, last frame, rad.
+    """
+
+    joints: Array
+    sections: Array
+    stress: Array | None
+    way: Array
+    apart: Array
+    strain: Array
+
+
+def plain(beams: int) -> local.Answer:
+    """Return the answer of a network that has nothing to add."""
+    zero = lambda *shape: jnp.zeros((2, beams, *shape))  # noqa: E731
+    return local.Answer(zero(6), zero(6), zero(4, 3), zero(4, 3))
+
+
+def corrected(el: Elements, told: local.Answer) -> Elements:
+    """Return elements with the network's corrections of rest and stiffness."""
+    root = jnp.exp(told.stiff / 2)
+    return el._replace(
+        rest=el.rest @ exp_se3(told.rest),
+        stiffness=root[..., :, None] * el.stiffness * root[..., None, :],
+    )
+
+
+def first(
+    bones: Skeleton, plan: Flat, el: Elements, tolerance: float = TOLERANCE
+) -> tuple[State, Array, Array]:
+    """Return the shapes by mechanics alone (11), the halves' twists, and the last motions."""
+    states, ways = rollout(bones, plan, el, tolerance)
+    return states, jax.vmap(lambda e, state: twists(bones, e, state))(el, states), ways
+
+
+def shapes(
+    parameters: Parameters,
+    bones: Skeleton,
+    plan: Flat,
+    ratio: Array,
+    load: Loads,
+    material: Material,
+    tolerance: float = TOLERANCE,
+) -> Shapes:
+    """Return frames 1 to 11 of a design.
+
+    Args:
+        parameters: fitted.
+        bones: how the grid hangs together.
+        plan: the flat grid.
+        ratio: (B,) signed actuator ratios.
+        load: weights.
+        material: for the printed-in stress.
+        tolerance: of the last motion of an iteration, mm.
+    """
+    law, network, stress = parameters
+    released = jnp.array(RELEASED)
+    bare = every_frame(law, bones, plan, ratio, load)
+    begun, strains, ways = first(bones, plan, bare, tolerance)
+    told = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(released), *x.shape)), plain(len(ratio)))
+    ended, again = begun, ways
+    if network is not None:
+
+        def tell(state: State, twist: Array, s: Array, gravity: Array) -> local.Answer:
+            seen = local.look(bones, plan, ratio, state, twist, s, gravity)
+            return local.answer(network, bones, seen)
+
+        told = jax.vmap(tell)(begun, strains, released, load.gravity)
+        el = corrected(bare, told)
+        ended, again = jax.vmap(lambda e, state: settle(bones, e, state, tolerance, MOST))(
+            el, begun
+        )
+
+    def corners(state: State, s: Array, face: Array, middle: Array) -> tuple[Array, Array]:
+        return placed(bones, plan, state, *local_corners(law, bones, plan, s, face, middle))
+
+    joints, sections = jax.vmap(corners)(ended, released, told.face, told.middle)
+    return Shapes(
+        joints,
+        sections,
+        None
+        if stress is None
+        else strained(stress, bones, plan, ratio, load, material, bare, ended),
+        jnp.maximum(ways.max(), again.max()),
+        jnp.linalg.norm(ended.joints.p[-1] - begun.joints.p[-1], axis=-1).mean(),
+        jnp.sqrt((strains[-1, ..., 3:] ** 2).sum(-1).mean()),
+    )
+
+
+def strained(
+    network: local.Weights,
+    bones: Skeleton,
+    plan: Flat,
+    ratio: Array,
+    load: Loads,
+    material: Material,
+    bare: Elements,
+    states: State,
+) -> Array:
+    """Return the stresses (11, B, 4, 4, 6) of frames 1 to 11 in their states, MPa."""
+    first = stresses.printed(material, plan, ratio)
+
+    def one(el: Elements, state: State, s: Array, gravity: Array) -> Array:
+        own = (1 - s) * first + elastic(network, bones, plan, ratio, el, state, s, gravity)
+        return stresses.in_space(bones, plan, state, own)
+
+    return jax.vmap(one)(bare, states, jnp.array(RELEASED), load.gravity)
+
+
+def elastic(
+    network: local.Weights,
+    bones: Skeleton,
+    plan: Flat,
+    ratio: Array,
+    bare: Elements,
+    state: State,
+    s: Array,
+    gravity: Array,
+) -> Array:
+    """Return the elastic stress (2, B, 2, 4, 6) that the network tells in the halves' axes, MPa.
+
+    Args:
+        network: the one for stresses.
+        bones: how the grid hangs together.
+        plan: the flat grid.
+        ratio: (B,) signed actuator ratios.
+        bare: halves by the law alone.
+        state: the poses.
+        s: released fraction.
+        gravity: multiple of gravity.
+    """
+    seen = local.look(bones, plan, ratio, state, twists(bones, bare, state), s, gravity)
+    return local.stresses(network, bones, seen)

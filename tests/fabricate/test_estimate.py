@@ -1,0 +1,99 @@
+"""Time and filament: against closed forms, against stepping through a print, and the oracle."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from simulearn.fabricate import extrusion, load_printer, prepare
+from simulearn.fabricate.estimate import _corners, _times, durations_of
+from simulearn.grid import make
+
+
+def time_of(way, fastest, acceleration, corner=None):
+    n = len(way)
+    full = lambda x: np.full(n, float(x)) if np.isscalar(x) else np.array(x, float)  # noqa: E731
+    corner = np.zeros(n) if corner is None else np.array(corner, float)
+    return _times(np.array(way, float), full(fastest), full(acceleration), corner)
+
+
+def test_forty_millimetres_of_bead():
+    assert extrusion(40.0, 0.4, 0.2, 1.75) == pytest.approx(1.3304, abs=5e-5)
+    assert extrusion(40.0, 0.4, 0.2, 1.75) == pytest.approx(40 * 0.4 * 0.2 / (pi * 1.75**2 / 4))
+
+
+def test_a_long_move_is_a_trapezoid_and_a_short_one_a_triangle():
+    assert time_of([100.0], 50, 1000).sum() == pytest.approx(100 / 50 + 50 / 1000)
+    assert time_of([1.0], 50, 1000).sum() == pytest.approx(2 * (1.0 / 1000) ** 0.5)
+
+
+def test_a_move_in_pieces_takes_as_long_as_in_one():
+    pieces = [3.0, 0.2, 40.0, 6.8, 50.0]
+    assert time_of(pieces, 50, 1000, [0, 1e9, 1e9, 1e9, 1e9]).sum() == pytest.approx(2.05)
+
+
+def test_a_corner_costs_what_its_speed_says():
+    v, a, c, d = 50.0, 1000.0, 8.0, 30.0
+    way = d - v**2 / (2 * a) - (v**2 - c**2) / (2 * a)
+    once = v / a + (v - c) / a + way / v
+    assert time_of([d, d], v, a, [0, c]).sum() == pytest.approx(2 * once)
+
+
+@pytest.mark.parametrize(("angle", "share"), [(90, 1.0), (180, 0.0), (60, 1.636), (120, 0.644)])
+def test_corner_speed(angle, share):
+    turn = np.radians(angle)
+    steps = np.array([[1.0, 0, 0], [np.cos(turn), np.sin(turn), 0]])
+    speed = _corners(steps, np.ones(2), np.ones(2, dtype=bool), 8.0)
+    # r = d s / (1 - s) with s the sine of half the angle between the moves; 1 at a right angle.
+    s = np.cos(turn / 2)
+    assert speed[1] / 8 == pytest.approx((2**0.5 - 1) ** 0.5 * (s / (1 - s)) ** 0.5, abs=1e-6)
+    assert speed[1] / 8 == pytest.approx(share, abs=0.001)
+
+
+@given(st.integers(0, 10**6))
+def test_two_sweeps_in_one_go_are_two_sweeps(seed):
+    random = np.random.default_rng(seed)
+    n = 30
+    way, fastest = random.uniform(0.01, 8, n), random.uniform(5, 90, n)
+    acceleration, corner = random.uniform(100, 3000, n), random.uniform(0, 40, n)
+    # One corner after the other, as firmware does it.
+    limit = np.append(np.minimum(corner, np.minimum(fastest, np.append(0, fastest[:-1]))), 0.0)
+    speed = limit.copy()
+    for k in range(n):
+        speed[k + 1] = min(speed[k + 1], (speed[k] ** 2 + 2 * acceleration[k] * way[k]) ** 0.5)
+    for k in reversed(range(n)):
+        speed[k] = min(speed[k], (speed[k + 1] ** 2 + 2 * acceleration[k] * way[k]) ** 0.5)
+    total = 0.0
+    for k in range(n):
+        a, b, v = speed[k], speed[k + 1], fastest[k]
+        top = min(v, ((2 * acceleration[k] * way[k] + a**2 + b**2) / 2) ** 0.5)
+        total += (2 * top - a - b) / acceleration[k]
+        total += (way[k] - (2 * top**2 - a**2 - b**2) / (2 * acceleration[k])) / top
+    assert _times(way, fastest, acceleration, corner).sum() == pytest.approx(total, rel=1e-6)
+
+
+def test_time_is_more_than_way_over_speed_and_tends_to_it():
+    printer = load_printer("modix-big60")
+    job = prepare([make("dome")], printer)
+    moves = job.moves
+    steps = np.diff(moves.places, axis=0, prepend=moves.start[None])
+    way = np.linalg.norm(steps, axis=1)
+    bare = float((np.where(way > 0, way, np.abs(moves.filament)) / (moves.speeds / 60)).sum())
+    motion = {"acceleration": 1e6, "acceleration_travel": 1e6, "acceleration_z": 1e6}
+    motion |= {"acceleration_e": 1e6, "corner_speed": 1000.0}
+    stiff = printer.model_copy(update={"motion": printer.motion.model_copy(update=motion)})
+    assert durations_of(moves, stiff).sum() == pytest.approx(bare, rel=2e-3)
+    assert job.estimate.seconds > 1.05 * bare
+
+
+def test_filament_in_three_units_and_heating_apart():
+    job = prepare([make("dome")], load_printer("voron"))
+    needs = job.estimate
+    volume = sum(layer.volume for layer in job.path.layers) / 1000
+    assert needs.filament_cm3 == pytest.approx(volume, rel=1e-4)
+    assert needs.filament_g == pytest.approx(1.25 * needs.filament_cm3, rel=1e-9)
+    assert needs.filament_mm == pytest.approx(1000 * needs.filament_cm3 / (pi * 1.75**2 / 4))
+    assert needs.heating_seconds == pytest.approx((205 - 20) / 2.0)
+    assert needs.seconds == pytest.approx(job.durations.sum())

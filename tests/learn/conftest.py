@@ -1,0 +1,69 @@
+"""A small data set, a small model for it, and designs to ask about."""
+
+from pathlib import Path
+
+import equinox as eqx
+import jax
+import pytest
+from conformance import designs_like
+
+from simulearn.dataset import Dataset, read_dataset
+from simulearn.grid import Rules
+from simulearn.learn.config import Config, config_of
+from simulearn.learn.model import Designs
+from simulearn.learn.paper import Paper
+from simulearn.learn.train import begin, split
+
+SAMPLE = Path(__file__).parent.parent / "data" / "sample.h5"
+
+WIDTHS = {"hidden": [12], "interaction": [8, 6], "latent": [5, 4]}  # quick to compile
+SMALL = {
+    "name": "tiny",
+    "data": str(SAMPLE),
+    "validation": 4,
+    "release": WIDTHS,
+    "creep": WIDTHS,
+    "phases": [{"epochs": 3, "unroll": 10, "noise": 0.0, "batch": 6}],
+}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quick_to_compile():
+    """Compiling for speed takes longer than what is compiled here runs."""
+    before = jax.config.read("jax_disable_most_optimizations")
+    jax.config.update("jax_disable_most_optimizations", True)
+    yield
+    jax.config.update("jax_disable_most_optimizations", before)
+
+
+@pytest.fixture(scope="session")
+def sample_file() -> Path:
+    return SAMPLE
+
+
+@pytest.fixture(scope="session")
+def sample() -> Dataset:
+    return read_dataset(SAMPLE)
+
+
+@pytest.fixture(scope="session")
+def small() -> Config:
+    return config_of(SMALL, "small")
+
+
+@pytest.fixture(scope="session")
+def model(small: Config, sample: Dataset) -> Paper:
+    """A model that has learnt nothing, but moves grids about as far as they move."""
+    untrained = begin(small, split(small, sample)[0]).model
+
+    def last(m):
+        return [
+            n.weights[-1] for e in (m.release, m.creep) for n in (e.second.joint, e.second.beam)
+        ]
+
+    return eqx.tree_at(last, untrained, [30 * x for x in last(untrained)])
+
+
+@pytest.fixture(scope="session")
+def designs() -> Designs:
+    return designs_like(Rules(), 3)

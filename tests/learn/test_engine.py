@@ -1,0 +1,95 @@
+"""The engine `learned`: grids in, results out, by any bundle."""
+
+import numpy as np
+import pytest
+
+from simulearn.errors import ComputationError, InputError
+from simulearn.grid import Rules, draw_valid, make
+from simulearn.learn.bundle import save_bundle
+from simulearn.learn.flat import flat
+from simulearn.learn.model import Designs
+from simulearn.simulate import engine, read_npz, write_npz
+from simulearn.simulate.learned import Learned
+
+
+@pytest.fixture(scope="module")
+def folder(model, sample, tmp_path_factory):
+    return save_bundle(tmp_path_factory.mktemp("models") / "tiny", model, "tiny", sample).path
+
+
+@pytest.fixture(scope="module")
+def learned(folder):
+    return engine("learned", folder)
+
+
+def test_results_come_in_the_order_of_the_grids_whatever_their_topologies(learned):
+    grids = [make("saddle"), make("cone", (1, 2)), make("dome"), make("flat", (1, 2))]
+    told = []
+    results = learned.simulate(grids, lambda done, total: told.append((done, total)))
+    assert told[-1] == (48, 48)
+    for grid, result in zip(grids, results, strict=True):
+        assert result.engine == "learned"
+        assert result.record["model"] == "tiny"
+        np.testing.assert_array_equal(result.grid.actuators, grid.actuators)
+        (alone,) = learned.simulate([grid])
+        np.testing.assert_allclose(alone.joints, result.joints, atol=2e-3)
+        assert result.seconds > 0
+
+
+def test_the_answer_is_the_models(learned, model):
+    grid = draw_valid(Rules(), 3, 0)[0].centred
+    (result,) = learned.simulate([grid])
+    designs = Designs(grid.beams, grid.fixed, grid.joints[None], grid.actuators[None])
+    frames = model.rollout(designs)
+    np.testing.assert_array_equal(result.joints, frames.joints[0])
+    np.testing.assert_array_equal(result.beams, frames.sections[0])
+    np.testing.assert_allclose(result.joints[0], flat(designs).joints[0], atol=1e-12)
+
+
+def test_a_result_without_stress_can_be_kept(learned, tmp_path):
+    (result,) = learned.simulate([make("twist")])
+    assert result.stress is None
+    write_npz(result, tmp_path / "twist.npz")
+    back = read_npz(tmp_path / "twist.npz")
+    np.testing.assert_array_equal(back.joints, result.joints)
+    assert back.stress is None
+
+
+def test_only_the_learned_engine_takes_a_model(folder):
+    with pytest.raises(InputError, match="takes no model"):
+        engine("fea", folder)
+    with pytest.raises(InputError, match="is not a model"):
+        engine("learned", "nowhere")
+
+
+def test_another_material_than_the_models_is_refused(learned, tmp_path):
+    from simulearn.material import load_material
+    from simulearn.material.material import MATERIALS
+
+    text = (MATERIALS / "pla-hot-water.toml").read_text("utf-8")
+    path = tmp_path / "other.toml"
+    path.write_text(text, encoding="utf-8")
+    assert load_material(str(path)).section.width == 7.2
+    with pytest.raises(InputError, match="has learnt pla-hot-water"):
+        learned.simulate([make("saddle", material=str(path))])
+
+
+def test_an_answer_that_is_none_is_not_given(learned):
+    class Broken:
+        kind = "paper"
+
+        def rollout(self, designs):
+            frames = learned.bundle.model.rollout(designs)
+            frames.converged[:] = False
+            return frames
+
+    from types import SimpleNamespace
+
+    broken = Learned(SimpleNamespace(card=learned.bundle.card, model=Broken()))
+    with pytest.raises(ComputationError, match="ask --engine fea"):
+        broken.simulate([make("saddle")])
+
+
+def test_the_training_ranges_are_the_bundles(learned):
+    assert learned.training == learned.bundle.card.range
+    assert learned.training.dimension[0] < learned.training.dimension[1]
