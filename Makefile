@@ -27,6 +27,8 @@ bench: .venv/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/against_calculix.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/speed.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/designs.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/dataset.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/print_time.py
 
 # The pictures of README.md.
 pictures: .venv/ready
