@@ -8,7 +8,7 @@ from simulearn.grid import Rules, validate
 
 
 def test_the_shipped_ones_are_what_they_say():
-    assert shipped() == ["2x3", "3x3", "beams-removed", "default", "sample"]
+    assert shipped() == ["2x3", "3x3", "beams-removed", "calibration", "default", "sample"]
     default = read_config("default")
     assert default.trials == 2000
     assert sum(default.is_test(k) for k in range(2000)) == 400

@@ -16,7 +16,7 @@ from simulearn.learn.train import begin, split
 
 SAMPLE = Path(__file__).parent.parent / "data" / "sample.h5"
 
-WIDTHS = {"hidden": [12], "interaction": [8, 6], "latent": [5, 4]}  # quick to compile
+WIDTHS = {"hidden": [12], "interaction": [8, 6], "latent": [5, 4], "activation": "silu"}
 SMALL = {
     "name": "tiny",
     "data": str(SAMPLE),
@@ -61,7 +61,7 @@ def model(small: Config, sample: Dataset) -> Paper:
             n.weights[-1] for e in (m.release, m.creep) for n in (e.second.joint, e.second.beam)
         ]
 
-    return eqx.tree_at(last, untrained, [30 * x for x in last(untrained)])
+    return eqx.tree_at(last, untrained, [3 * x for x in last(untrained)])
 
 
 @pytest.fixture(scope="session")

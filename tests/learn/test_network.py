@@ -49,7 +49,7 @@ def test_an_engine_is_algorithm_1_twice(batch, model):
     def network(mlp, *parts):
         x = np.concatenate(parts)
         for k, (weight, bias) in enumerate(zip(mlp.weights, mlp.biases, strict=True)):
-            x = (np.maximum(x, 0) if k else x) @ weight + bias
+            x = (x / (1 + np.exp(-x)) if k else x) @ weight + bias  # SiLU
         return x
 
     def seen(normaliser, elements, origin):
@@ -108,12 +108,12 @@ def test_an_engine_is_algorithm_1_twice(batch, model):
         nothing = np.zeros((len(joints[t]), 0)), np.zeros((len(beams[t]), 0))
         latent = interact(engine.first, t, *nothing)
         steps = interact(engine.second, t, *latent)
-        moved = steps[0] * norm.joint_step
+        moved = steps[0] @ norm.joint_step
         moved[batch.fixed, :12] = 0  # the lower corners of the fixed joint are held
         np.testing.assert_allclose(
             np.asarray(after.joints)[:, t], joints[t, :, 3:27] + moved, atol=2e-3
         )
-        increments = steps[1] * norm.beam_step
+        increments = steps[1] @ norm.beam_step
         np.testing.assert_allclose(
             np.asarray(after.sections)[:, t], beams[t, :, 3:39] + increments[:, :36], atol=2e-3
         )
@@ -125,28 +125,42 @@ def test_an_engine_is_algorithm_1_twice(batch, model):
 def test_components_have_zero_mean_and_unit_variance_and_hold_what_they_should():
     rng = np.random.default_rng(0)
     x = rng.normal(size=(4000, 4)) @ rng.normal(size=(4, 31)) * 20 + 5
-    x += 0.01 * rng.normal(size=x.shape)
-    normaliser = fit(x, (31,), 0.98)
+    x += 0.3 * rng.normal(size=x.shape)
+    normaliser = fit(x, (31,), (0.98, 0.98))
     assert normaliser.size <= 4
     z = x @ np.asarray(normaliser.matrix) + np.asarray(normaliser.offset)
     np.testing.assert_allclose(z.mean(axis=0), 0, atol=1e-3)
     np.testing.assert_allclose(np.cov(z.T), np.eye(normaliser.size), atol=1e-2)
-    assert fit(x, (31,), 0.99999).size > 4
+    assert fit(x, (31,), (0.99999, 0.98)).size > 4
 
 
 def test_constant_features_are_ignored():
     rng = np.random.default_rng(0)
     x = rng.normal(size=(500, 31))
     x[:, 27] = 1.0
-    matrix = np.asarray(fit(x, (31,), 0.9999).matrix)
+    matrix = np.asarray(fit(x, (31,), (0.9999, 0.98)).matrix)
     np.testing.assert_array_equal(matrix[27], 0)
     assert np.isfinite(matrix).all()
 
 
 def test_moving_a_grid_changes_no_component(sample):
-    release, _ = normalisers(sample.batches, 0.98, 0)
-    shift = np.asarray(release.beam.matrix)[:39].reshape(13, 3, -1).sum(axis=0)
-    np.testing.assert_allclose(release.beam.shift, shift, atol=1e-4)
+    norm = normalisers(sample.batches, (0.999, 0.98), 0)[0].beam
+    x = np.random.default_rng(0).normal(size=(5, 139)).astype(np.float32)
+    shift = np.float32([30.0, -20.0, 7.0])
+    before = norm.element(x, x[:, :3])
+    after = norm.element(x + shift @ placed(139).astype(np.float32), x[:, :3] + shift)
+    np.testing.assert_allclose(after, before, atol=1e-3)
+
+
+def test_increments_are_given_by_their_components(sample):
+    norm = normalisers(sample.batches, (0.999, 0.98), 0)[0]
+    batch = sample.batches[0]
+    moves = np.diff(batch.joints[:, :11].reshape(len(batch), 11, -1, 24), axis=1).reshape(-1, 24)
+    basis = np.asarray(norm.joint_step)
+    left = moves - moves @ np.linalg.pinv(basis) @ basis
+    assert np.linalg.norm(left) < 0.01 * np.linalg.norm(moves)
+    sizes = np.linalg.norm(basis, axis=1)
+    assert sizes[0] > 5 * sizes[-1]
 
 
 def test_the_gradient_of_a_rollout_is_that_of_finite_differences(model, designs):

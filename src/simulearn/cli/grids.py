@@ -36,7 +36,9 @@ ModelOption = Annotated[
 @app.command()
 def simulate(
     grid: GridArgument,
-    engine: Annotated[str, typer.Option(help="Who answers: fea, calculix or learned.")] = "fea",
+    engine: Annotated[
+        str, typer.Option(help="Who answers: fea, calculix, beams or learned.")
+    ] = "fea",
     model: ModelOption = None,
     output: Annotated[
         list[Path] | None,
@@ -58,7 +60,7 @@ def simulate(
     design = grid_of(grid)
     outputs.check(files, Path(grid))
     answering = engine_of(engine, model)
-    for warning in _validated(design, model or "default" if engine == "learned" else None).warnings:
+    for warning in _validated(design, _model_of(engine, model)).warnings:
         err.print(f"[yellow]warning:[/] {escape(warning.message)}")
     with _progress(quiet=as_json) as progress:
         result = answering.simulate([design], progress)[0]
@@ -121,6 +123,11 @@ def library_(
         out.print(f"wrote {escape(str(output))}")
     if as_json or output is None:
         print(json.dumps(grid_to_dict(grid)))
+
+
+def _model_of(engine: str, model: str | None) -> str | None:
+    """Return the model whose training ranges an engine warns by."""
+    return {"learned": model or "default", "beams": "beams"}.get(engine)
 
 
 def _validated(grid: Grid, model: str | None) -> Validation:

@@ -212,7 +212,7 @@ def save_bundle(
     path = Path(path)
     if path.exists() and not (path / "model.json").is_file() and any(path.iterdir()):
         raise InputError(f"{path}: holds other files; name another folder for the model")
-    arrays = {k: np.ascontiguousarray(v) for k, v in model.to_arrays().items()}
+    arrays = {k: np.asarray(v, order="C") for k, v in model.to_arrays().items()}
     content = save(arrays)
     batches = [b.take(~b.test) for b in data.batches]
     batches = [b for b in batches if len(b)]

@@ -4,7 +4,6 @@ What they answer is a minimum of the energy of a grid of beams between joints; s
 """
 
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial
 from typing import Any
@@ -26,7 +25,6 @@ from simulearn.mechanics.skeleton import Flat, Skeleton, flat, skeletons
 
 CONVERGED = 0.05  # mm, the last motion of an iteration at most
 AT_ONCE = 8  # designs in one call of a kernel
-THREADS = 2
 
 Weights = dict[str, NDArray[Any]]
 
@@ -67,11 +65,9 @@ class Equilibrium:
                 np.asarray, kernel(some, designs.flat[which], designs.actuators[which])
             )
 
-        if len(parts) > 1:
-            with ThreadPoolExecutor(THREADS) as pool:
-                told = list(pool.map(run, parts))
-        else:
-            told = [run(which) for which in parts]
+        # One after the other: two kernels at once wait for each other for ever where JAX has one
+        # thread.
+        told = [run(which) for which in parts]
         joined: Shapes = jax.tree.map(lambda *x: np.concatenate(x)[:count], *told)
         whole = (joined.joints, joined.sections)
         good = (joined.way < CONVERGED) & np.all(

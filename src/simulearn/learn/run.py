@@ -1,6 +1,5 @@
 """A run in its folder: checkpoint, loss curve, and the model at the end.
 
-FOLDER/run.toml.json           the configuration, as it was read
 FOLDER/checkpoint.safetensors  replaced after every epoch
 FOLDER/loss.csv, loss.png      replaced after every epoch
 FOLDER/model/                  the bundle, at the end

@@ -85,7 +85,7 @@ def skeletons(beams: Indices, fixed: int, joints: NDArray[np.float64]) -> Skelet
     side = whole(2, many)
     row = np.arange(trials)
     for joint in range(count):
-        ends, leaving = np.nonzero(joint == beams.T)
+        ends, leaving = np.argwhere(joint == beams.T).T
         half = ends * many + leaving
         way = joints[:, beams[leaving, 1 - ends]] - joints[:, joint, None]
         angle = np.arctan2(way[..., 1], way[..., 0])

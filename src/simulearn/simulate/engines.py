@@ -5,7 +5,7 @@ validation before, the Result after.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -91,9 +91,16 @@ def _learned(model: Path | str = "default") -> Simulator:
     return Learned.of(model)
 
 
+def _beams() -> Simulator:
+    from simulearn.simulate.learned import Learned
+
+    return replace(Learned.of("beams"), name="beams")
+
+
 ENGINES: dict[str, Callable[[], Simulator]] = {
     "fea": _fea,
     "calculix": _calculix,
+    "beams": _beams,
     "learned": _learned,
 }
 
