@@ -23,7 +23,9 @@ SMALL = {
     "validation": 4,
     "release": WIDTHS,
     "creep": WIDTHS,
-    "phases": [{"epochs": 3, "unroll": 10, "noise": 0.0, "batch": 6}],
+    "optimiser": "muon",
+    "rate": 1e-2,
+    "phases": [{"epochs": 30, "unroll": 10, "noise": 0.0, "batch": 6}],
 }
 
 
@@ -61,7 +63,7 @@ def model(small: Config, sample: Dataset) -> Paper:
             n.weights[-1] for e in (m.release, m.creep) for n in (e.second.joint, e.second.beam)
         ]
 
-    return eqx.tree_at(last, untrained, [3 * x for x in last(untrained)])
+    return eqx.tree_at(last, untrained, [2 * x for x in last(untrained)])
 
 
 @pytest.fixture(scope="session")

@@ -53,7 +53,7 @@ def test_the_loss_of_a_model_that_moves_nothing_is_what_moves(prepared, examples
     value, parts = jax.jit(loss, static_argnums=5)(
         still(model), examples, prepared.shape, prepared.ends, NOTHING, unroll, jax.random.key(0)
     )
-    unit = float(model.release.normalisers.joint_step[0])
+    unit = float(model.release.normalisers.unit[0])
     weight = np.asarray(examples.weight)[:, None]
     expected, creep = 0.0, 0.0
     for x in (np.asarray(examples.frames.joints), np.asarray(examples.frames.sections)):

@@ -57,7 +57,7 @@ def test_the_adjoint_carries_twists():
     np.testing.assert_allclose(carried.p, around.p, atol=1e-4)
 
 
-@pytest.mark.parametrize(("largest", "tolerance"), [(1.0, 2e-5), (0.5, 1e-7)])
+@pytest.mark.parametrize(("largest", "tolerance"), [(1.0, 2e-5), (0.5, 5e-7)])
 def test_how_logarithms_change(largest, tolerance):
     small = TWISTS.at[:, 3:].multiply(largest / 2)
     change = jax.vmap(jax.jacfwd(lambda e, x: log_se3(exp_se3(x) @ exp_se3(e))))

@@ -31,7 +31,7 @@ from simulearn.learn.flat import designs_of
 from simulearn.learn.graph import Topology
 from simulearn.learn.loss import Examples, Prepared, Weights, loss
 from simulearn.learn.metrics import errors, together
-from simulearn.learn.network import Engine
+from simulearn.learn.network import Engine, Normalisers
 from simulearn.learn.paper import Paper
 
 PARTS = ("loss", "release", "creep", "stress", "dislocation")
@@ -190,12 +190,17 @@ def begin(config: Config, batches: Sequence[Batch]) -> Run:
     """Return a run before its first update: normalisers fitted to trials, weights drawn."""
     aligned = config.orientation == "aligned"
     release, creep = normalisers(batches, config.variance, config.seed, aligned)
-    keys = jax.random.split(jax.random.key(config.seed))
     sizes = config.release.sizes, config.creep.sizes
-    model = Paper(
-        Engine(release, sizes[0], keys[0]), Engine(creep, sizes[1], keys[1]), sizes, aligned
-    )
-    return Run(model, OPTIMISERS[config.optimiser].init(_learnt(model)[0]))
+
+    @eqx.filter_jit  # one kernel for all weights is quicker to compile than one for each
+    def drawn(release: Normalisers, creep: Normalisers, key: Array) -> Run:
+        keys = jax.random.split(key)
+        engines = Engine(release, sizes[0], keys[0]), Engine(creep, sizes[1], keys[1])
+        model = Paper(*engines, sizes, aligned)
+        return Run(model, OPTIMISERS[config.optimiser].init(_learnt(model)[0]))
+
+    run: Run = drawn(release, creep, jax.random.key(config.seed))
+    return run
 
 
 def _learnt(model: Paper) -> tuple[Paper, Paper]:
