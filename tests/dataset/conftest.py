@@ -1,11 +1,9 @@
 """A small data set: single cells on a coarse mesh, a quarter of a second each."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from running import command
 
 from simulearn.dataset import Config, config_of
 
@@ -44,16 +42,3 @@ def folder(tmp_path_factory: pytest.TempPathFactory, small_file: Path) -> Path:
     done = command("dataset", "generate", small_file, "-o", path).communicate()
     assert "12 trials, 0 failed" in done[0], done
     return path
-
-
-def command(*words: object, **more: object) -> "subprocess.Popen[str]":
-    """Start the command line in a process group of its own."""
-    return subprocess.Popen(
-        [sys.executable, "-m", "simulearn.cli", *map(str, words)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        env={**os.environ, "COLUMNS": "200"},
-        **more,  # type: ignore[call-overload]
-    )

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import psutil
 import pytest
+from running import command
 
-from dataset.conftest import command
 from simulearn.dataset import Config, cluster_workers, generate, local_workers, pack
 from simulearn.dataset.generate import Folder
 from simulearn.dataset.trial import Answer, Job, read_trial, run

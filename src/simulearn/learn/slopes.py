@@ -1,0 +1,87 @@
+"""How a cost of the last frame changes with a design: the derivative of a whole simulation.
+
+Equilibria are differentiated by the theorem of implicit functions, so the price is about that of
+two more iterations in each frame, whatever the number of joints and beams.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.learn.equilibrium import CONVERGED, Equilibrium
+from simulearn.learn.model import Designs
+from simulearn.learn.shapes import Parameters, shapes
+from simulearn.material import load_material
+from simulearn.mechanics.poses import Array
+from simulearn.mechanics.rollout import loads
+from simulearn.mechanics.skeleton import Skeleton, flat, skeletons
+
+Cost = Callable[[Array, Array, Any], Array]
+
+
+class Slopes(NamedTuple):
+    """Costs of T designs, and their derivatives.
+
+    Attributes:
+        cost: (T,).
+        flat: (T, J, 2) by the places of joints, per mm.
+        actuators: (T, B) by the signed ratios; at a ratio of 0, where a beam has a kink, that of
+            its upper half.
+        converged: (T,) whether the simulation has an answer.
+    """
+
+    cost: NDArray[np.float64]
+    flat: NDArray[np.float64]
+    actuators: NDArray[np.float64]
+    converged: NDArray[np.bool_]
+
+
+def slopes(model: Equilibrium, designs: Designs, cost: Cost, given: Any) -> Slopes:
+    """Return costs of designs of one topology, and how they change with the designs.
+
+    Args:
+        model: the simulator.
+        designs: T of them.
+        cost: (joints (J, 8, 3), sections (B, 3, 4, 3), given) -> (), in terms of JAX; a function
+            of a module, since it is compiled once.
+        given: arrays that the cost goes by, the same for all designs.
+    """
+    bones = skeletons(designs.beams, designs.fixed, designs.flat)
+    kernel = _kernel(model.material, cost)
+    parameters = model.parameters._replace(stress=None)
+    parts = []
+    for t in range(len(designs)):
+        one = Skeleton(*(x[t] for x in bones))
+        parts.append(kernel(parameters, one, designs.flat[t], designs.actuators[t], given))
+    told: list[Any] = [np.stack([np.asarray(part[k]) for part in parts]) for k in range(4)]
+    return Slopes(told[0], told[1], told[2], told[3] < CONVERGED)
+
+
+@lru_cache
+def _kernel(material: str, cost: Cost) -> Any:
+    """Return the compiled function: parameters, skeleton, joints, ratios, given -> slopes."""
+    data = load_material(material)
+    load = loads(data)
+
+    def value(
+        design: tuple[Array, Array], parameters: Parameters, bones: Skeleton, given: Any
+    ) -> tuple[Array, Array]:
+        plan = flat(bones, design[0], data.section)
+        told = shapes(parameters, bones, plan, design[1], load, data)
+        return cost(told.joints[-1], told.sections[-1], given), told.way
+
+    @jax.jit
+    def kernel(
+        parameters: Parameters, bones: Skeleton, joints: Array, ratio: Array, given: Any
+    ) -> Any:
+        both, slope = jax.value_and_grad(value, has_aux=True)(
+            (joints, ratio), parameters, bones, given
+        )
+        return both[0], slope[0], slope[1], jnp.asarray(both[1])
+
+    return kernel

@@ -1,0 +1,18 @@
+"""The command line in a process of its own."""
+
+import os
+import subprocess
+import sys
+
+
+def command(*words: object, **more: object) -> "subprocess.Popen[str]":
+    """Start the command line in a process group of its own."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "simulearn.cli", *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        env={**os.environ, "COLUMNS": "200"},
+        **more,  # type: ignore[call-overload]
+    )
