@@ -9,6 +9,7 @@ Rules and limits: Yang et al., SimuLearn, UIST 2020, Figure 15, and the authors'
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -99,12 +100,13 @@ def validate(
         for b, (i, j) in enumerate(grid.beams.tolist())
         if beams[b] and i in shapes and j in shapes
     }
+    lengths = {b: _lengths(grid, b, quad) for b, quad in quads.items()}
     warnings = removals(grid)
-    for b, quad in quads.items():
-        errors += _beam_errors(grid, b, quad, limits)
-        warnings += _beam_warnings(grid, b, quad, limits, training)
+    for b, measures in lengths.items():
+        errors += _beam_errors(grid, b, measures, limits)
+        warnings += _beam_warnings(b, measures, limits, training)
     if in_place:
-        roomy = {b: q for b, q in quads.items() if _lengths(grid, b, q)[2] >= SHORTEST_EDGE}
+        roomy = {b: q for b, q in quads.items() if lengths[b][2] >= SHORTEST_EDGE}
         errors += _collisions(shapes, roomy)
         if training is not None:
             warnings += _size(grid, joints, training)
@@ -155,18 +157,18 @@ def _parts(grid: Grid) -> list[set[int]]:
 
 def _lengths(grid: Grid, beam: int, quad: NDArray[np.float64]) -> tuple[float, float, float]:
     """Return a beam's length centre to centre, its net length and its shorter edge, mm."""
-    start, end = grid.joints[grid.beams[beam]]
-    length = float(np.linalg.norm(end - start))
-    edges = (quad[1] - quad[0]) @ (end - start) / length
+    (x, y), (u, v) = grid.joints[grid.beams[beam]].tolist()
+    length = hypot(u - x, v - y)
+    right, left = ((quad[1] - quad[0]) @ (u - x, v - y) / length).tolist()
     # The middle of a joint's side lies on the axis.
-    return length, float(edges.mean()), float(edges.min())
+    return length, (right + left) / 2, min(right, left)
 
 
 def _beam_errors(
-    grid: Grid, beam: int, quad: NDArray[np.float64], limits: Limits
+    grid: Grid, beam: int, measures: tuple[float, float, float], limits: Limits
 ) -> Iterator[Message]:
     """Yield errors of one beam: no room between its joints, or too short an actuator."""
-    _, net, edge = _lengths(grid, beam, quad)
+    _, net, edge = measures
     if edge < SHORTEST_EDGE:
         i, j = grid.beams[beam]
         yield Message(
@@ -187,14 +189,13 @@ def _beam_errors(
 
 
 def _beam_warnings(
-    grid: Grid,
     beam: int,
-    quad: NDArray[np.float64],
+    measures: tuple[float, float, float],
     limits: Limits,
     training: TrainingRange | None,
 ) -> Iterator[Message]:
     """Yield warnings of one beam: an unusual length."""
-    length, net, _ = _lengths(grid, beam, quad)
+    length, net, _ = measures
     least, most = training.beam_length if training else (0.0, limits.beam_length)
     where = f"beam {beam}"
     if length > most + ROUNDING:
