@@ -40,12 +40,12 @@ def misses(
         told = local.answer(parameters.network, bones, seen)
         el = corrected(el, told)
     at = jax.tree.map(lambda x: x[frame], trial.state)
-    joints, middles = solve(bones, balance(bones, el, at))
+    joints, middles = solve(bones, *balance(bones, el, at))
     own = local_corners(parameters.law, bones, plan, s, told.face, told.middle)
 
     def off(turn: Array, step: Array, true: Array, told: Array) -> Array:
-        moved = jnp.cross(step[:, None, 3:], true) + told - true
-        return step[:, None, :3] + jnp.einsum("kij,kcj->kci", turn, moved)
+        own = lambda x: jnp.einsum("kij,kcj->kci", turn, x)  # noqa: E731
+        return step[:, None, :3] + jnp.cross(step[:, None, 3:], own(true)) + own(told - true)
 
     missed = off(at.joints.R, joints, trial.joints[frame], own[0])
     missed = missed.at[bones.fixed, :4].set(0.0)  # the held corners

@@ -1,9 +1,13 @@
 """Equilibrium of a grid of halves of beams between joints, by Gauss-Newton with elimination.
 
 Each half stores d.K.d / 2, d being the twist by which its middle has left its place at rest:
-exact for any rotation, and for the constant strains of the rest itself. Middles of beams are
-eliminated in 6 x 6 blocks; only joints remain. The stiffness of second order in d is left out:
-the iteration then always goes downhill, and needs two or three steps from a good start.
+exact for any rotation, and for the constant strains of the rest itself. A beam is two such springs
+in series; its middle is eliminated, and a 6 x 6 stiffness between two joints remains. Told about
+the origin in the axes of space, a spring pulls both of its joints by the same wrench, so the
+matrix of the joints is the Laplacian of the grid, with these stiffnesses for weights.
+
+The stiffness of second order in d is left out: the iteration then always goes downhill. Near
+the end it goes on with the factors it has.
 """
 
 from functools import partial
@@ -11,22 +15,19 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+from jax.scipy.linalg import cho_solve
 
-from simulearn.mechanics.poses import (
-    Array,
-    Pose,
-    adjoint,
-    exp_so3,
-    hat,
-    inverse_right,
-    log_se3,
-)
+from simulearn.mechanics.poses import Array, Pose, exp_so3, hat, inverse_right, log_se3
 from simulearn.mechanics.skeleton import Skeleton
 
 UP = jnp.array([0.0, 0.0, 1.0])
 # The axes of a beam's middle as its two halves see them.
 FLIP = jnp.stack([jnp.eye(3), jnp.diag(jnp.array([-1.0, -1.0, 1.0]))])
-LONGEST = 15.0  # mm, that a joint may move in one step
+LONGEST = 15.0  # mm, that anything may move in one step
+NEAR = 1.0  # mm, the motion below which old factors do
+AGAIN = 4  # steps with the same factors, at most
+EARLY = 4  # steps with fresh factors, after which no old ones are tried
+SLOW = 0.4  # of the step before; where a step is longer, new factors are needed
 
 
 class State(NamedTuple):
@@ -65,6 +66,18 @@ class Halves(NamedTuple):
     middle: Pose
 
 
+class Forces(NamedTuple):
+    """Wrenches out of balance: force and moment in the axes of space, about the body itself.
+
+    Attributes:
+        joints: (J, 6), or those of each half (2, B, 6).
+        middles: (B, 6), or (2, B, 6).
+    """
+
+    joints: Array
+    middles: Array
+
+
 def halves(bones: Skeleton, state: State) -> Halves:
     """Return the poses that each half joins."""
     joint = Pose(state.joints.R[bones.ends], state.joints.p[bones.ends])
@@ -73,134 +86,170 @@ def halves(bones: Skeleton, state: State) -> Halves:
 
 def twists(bones: Skeleton, elements: Elements, state: State) -> Array:
     """Return how far the halves' middles have left their places at rest: (2, B, 6)."""
-    return _seen(elements, halves(bones, state))[0]
+    return _twists(elements, halves(bones, state))
 
 
-def _seen(el: Elements, at: Halves) -> tuple[Array, Pose]:
-    """Return the twists, and the middles as seen from the faces."""
+def _twists(el: Elements, at: Halves) -> Array:
     seen = (at.joint @ Pose(el.frame, el.face)).inverse @ at.middle
-    return log_se3(el.rest.inverse @ seen), seen
+    return log_se3(el.rest.inverse @ seen)
 
 
-def _forces(el: Elements, at: Halves) -> tuple[Array, Array]:
-    """Return the forces of each half on its joint and middle (2, B, 12), and twists by motions.
-
-    Motions are translation in space and rotation in the body, of joint and middle.
-    """
-    d, seen = _seen(el, at)
-    turn = at.joint.R
-    zero = jnp.zeros_like(turn)
-    back = jnp.swapaxes(el.frame, -1, -2)
-    at_face = _block(jnp.swapaxes(turn @ el.frame, -1, -2), -back @ hat(el.face), zero, back)
-    flip = jnp.broadcast_to(FLIP[:, None], zero.shape)
-    at_middle = _block(jnp.swapaxes(at.middle.R, -1, -2), zero, zero, flip)
-    change = inverse_right(d)
-    motion = jnp.concatenate(
-        [-change @ adjoint(seen.inverse) @ at_face, change @ at_middle], -1
-    )  # (2, B, 6, 12)
-    pull = jnp.einsum("hbij,hbj->hbi", el.stiffness, d)
-    return jnp.einsum("hbji,hbj->hbi", motion, pull) + _weights(el, at), motion
+def _change(d: Array, at: Halves) -> Array:
+    """Return how twists change as middles move, in the axes of space: (2, B, 6, 6)."""
+    back = jnp.swapaxes(at.middle.R, -1, -2)
+    turn, along = inverse_right(d)
+    turn, along = turn @ back, along @ back
+    return _block(turn, along, jnp.zeros_like(turn), turn)
 
 
 def _block(a: Array, b: Array, c: Array, d: Array) -> Array:
     return jnp.concatenate([jnp.concatenate([a, b], -1), jnp.concatenate([c, d], -1)], -2)
 
 
-def _weights(el: Elements, at: Halves) -> Array:
-    """Return the forces of the halves' weight, as a cubic deflection shares it: (2, B, 12)."""
-    half = el.length * el.line / 2
-    moment = el.length**2 * el.line / 12
-    seen = at.joint.R[..., 2, :]  # up, as the joint sees it
-    tangent = el.frame[..., 0]
-    at_joint = half[:, None] * jnp.cross(el.face, seen) + moment[:, None] * jnp.cross(tangent, seen)
-    along = jnp.broadcast_to(FLIP[:, None, :, 0], seen.shape)  # the tangent in the middle's axes
-    above = jnp.einsum("hij,hbj->hbi", FLIP, at.middle.R[..., 2, :])
-    at_middle = -moment[:, None] * jnp.cross(along, above)
-    lift = jnp.broadcast_to(half[:, None] * UP, seen.shape)
-    return jnp.concatenate([lift, at_joint, lift, at_middle], -1)
+def _forces(el: Elements, at: Halves) -> tuple[Forces, Array]:
+    """Return the wrenches of each half on its joint and middle, and its `_change`."""
+    d = _twists(el, at)
+    change = _change(d, at)
+    pull = jnp.einsum("hbji,hbjk,hbk->hbi", change, el.stiffness, d)
+    # Weight, as a cubic deflection shares it between the ends.
+    lift = (el.length * el.line / 2)[:, None] * UP
+    couple = (el.length**2 * el.line / 12)[:, None]
+    face = jnp.einsum("hbij,hbj->hbi", at.joint.R, el.face)
+    tangent = jnp.einsum("hbij,hbj->hbi", at.joint.R, el.frame[..., 0])
+    force, moment = pull[..., :3], pull[..., 3:]
+    on_joint = jnp.cross(face, lift) + couple * jnp.cross(tangent, UP)
+    on_joint -= moment + jnp.cross(at.middle.p - at.joint.p, force)
+    on_middle = moment - couple * jnp.cross(at.middle.R[..., 0], UP)
+    both = (lift - force, on_joint), (lift + force, on_middle)
+    return Forces(*(jnp.concatenate(pair, -1) for pair in both)), change
 
 
-class Balance(NamedTuple):
-    """Forces that are out of balance, and stiffness, in (translation in space, rotation in body).
+def _gathered(bones: Skeleton, el: Elements, each: Forces) -> Forces:
+    """Return the wrenches on joints and middles, given those of halves."""
+    own = jnp.zeros((len(el.weight), 6)).at[:, 2].add(el.weight)
+    return Forces(own.at[bones.ends].add(each.joints), each.middles.sum(0))
+
+
+class Factors(NamedTuple):
+    """What a step needs besides the forces.
 
     Attributes:
-        joints: (J, 6) N, N mm.
-        middles: (B, 6).
-        blocks: (2, B, 12, 12) of each half's joint and middle.
+        root: (6 J, 6 J) Cholesky factor of the joints' stiffness, about the origin.
+        soft: (B, 6, 6) inverse of the stiffness that holds a middle.
+        share: (B, 6, 6) how far a middle follows its first joint; the rest of the way its second.
+        joints: (J, 3) where they were.
+        middles: (B, 3).
     """
 
+    root: Array
+    soft: Array
+    share: Array
     joints: Array
     middles: Array
-    blocks: Array
 
 
-def balance(bones: Skeleton, el: Elements, state: State) -> Balance:
-    """Return the forces out of balance in a state, and its Gauss-Newton stiffness."""
-    force, motion = _forces(el, halves(bones, state))
-    blocks = jnp.swapaxes(motion, -1, -2) @ el.stiffness @ motion
-    return Balance(*_gathered(bones, el, force), blocks)
-
-
-def _gathered(bones: Skeleton, el: Elements, force: Array) -> tuple[Array, Array]:
-    joints = jnp.zeros((len(el.weight), 6)).at[:, 2].add(el.weight)
-    return joints.at[bones.ends].add(force[..., :6]), force[..., 6:].sum(0)
-
-
-def solve(bones: Skeleton, at: Balance) -> tuple[Array, Array]:
-    """Return the step (J, 6), (B, 6) that would balance a linear grid; the fixed joint stays."""
-    a, b = at.blocks
-    coupling = jnp.concatenate([a[:, :6, 6:], b[:, :6, 6:]], 1)  # (B, 12, 6)
-    inner = a[:, 6:, 6:] + b[:, 6:, 6:]
-    right = jnp.concatenate([jnp.swapaxes(coupling, 1, 2), at.middles[..., None]], -1)
-    solved = jnp.linalg.solve(inner, right)  # (B, 6, 13)
-    outer = -coupling @ solved
-    schur = outer[..., :12].at[:, :6, :6].add(a[:, :6, :6]).at[:, 6:, 6:].add(b[:, :6, :6])
-    count = at.joints.shape[0]
-    index = (6 * bones.ends[..., None] + jnp.arange(6)).transpose(1, 0, 2).reshape(-1, 12)
-    matrix = jnp.zeros((6 * count, 6 * count))
-    matrix = matrix.at[index[:, :, None], index[:, None, :]].add(schur)
-    force = at.joints.ravel().at[index].add(outer[..., 12])
+def balance(bones: Skeleton, el: Elements, state: State) -> tuple[Forces, Factors]:
+    """Return the forces out of balance in a state, and the factors of its stiffness."""
+    each, change = _forces(el, halves(bones, state))
+    spring = jnp.swapaxes(change, -1, -2) @ el.stiffness @ change
+    soft = inverse_of_blocks(spring[0] + spring[1])
+    share = soft @ spring[0]
+    both = spring[0] - spring[0] @ share  # of the two in series
+    here = _from_origin(state.middles.p)
+    weight = jnp.swapaxes(here, -1, -2) @ both @ here
+    a, b = 6 * bones.ends[..., None] + jnp.arange(6)
+    size = 6 * len(el.weight)
+    rows, columns = jnp.stack([a, b, a, b])[..., None], jnp.stack([a, b, b, a])[..., None, :]
+    signed = jnp.array([1.0, 1.0, -1.0, -1.0])[:, None, None, None] * weight
+    matrix = jnp.zeros((size, size)).at[rows, columns].add(signed)
     held = 6 * bones.fixed + jnp.arange(6)
     matrix = matrix.at[held, :].set(0.0).at[:, held].set(0.0).at[held, held].set(1.0)
-    force = force.at[held].set(0.0)
-    joints = -jnp.linalg.solve(matrix, force)
-    middles = -solved[..., 12] - jnp.einsum("bij,bj->bi", solved[..., :12], joints[index])
-    return joints.reshape(-1, 6), middles
+    places = state.joints.p, state.middles.p
+    factors = Factors(jnp.linalg.cholesky(matrix), soft, share, *places)
+    return _gathered(bones, el, each), factors
+
+
+def _from_origin(p: Array) -> Array:
+    """Return (..., 6, 6): what a motion about the origin is at points (..., 3)."""
+    eye = jnp.broadcast_to(jnp.eye(3), (*p.shape, 3))
+    return _block(eye, -hat(p), jnp.zeros_like(eye), eye)
+
+
+def inverse_of_blocks(matrix: Array) -> Array:
+    """Return the inverse of symmetric positive (..., 6, 6), by blocks of three."""
+    a, b, d = matrix[..., :3, :3], matrix[..., :3, 3:], matrix[..., 3:, 3:]
+    across = jnp.swapaxes(b, -1, -2)
+    soft = _inverse_of_three(a)
+    carried = soft @ b
+    rest = _inverse_of_three(d - across @ carried)
+    out = -carried @ rest
+    return _block(soft - out @ jnp.swapaxes(carried, -1, -2), out, jnp.swapaxes(out, -1, -2), rest)
+
+
+def _inverse_of_three(m: Array) -> Array:
+    """Return the inverse of (..., 3, 3), whose columns are cross products of rows."""
+    x, y, z = m[..., 0, :], m[..., 1, :], m[..., 2, :]
+    first = jnp.cross(y, z)
+    return jnp.stack([first, jnp.cross(z, x), jnp.cross(x, y)], -1) / (x * first).sum(-1)[
+        ..., None, None
+    ]
+
+
+def solve(bones: Skeleton, forces: Forces, by: Factors) -> tuple[Array, Array]:
+    """Return the step that would balance a linear grid: (J, 6), (B, 6); the fixed joint stays.
+
+    A motion is a translation and a rotation in the axes of space, of a body about itself.
+    """
+    free = jnp.einsum("bij,bj->bi", by.soft, forces.middles)  # of a middle between held joints
+    first = jnp.einsum("bji,bj->bi", by.share, forces.middles)  # what its first joint takes
+    taken = jnp.stack([first, forces.middles - first])
+    right = _about_origin(by.joints, forces.joints)
+    right = right.at[bones.ends].add(_about_origin(by.middles, taken)).at[bones.fixed].set(0.0)
+    motion = -cho_solve((by.root, True), right.ravel()).reshape(right.shape)
+    a, b = _at(by.middles, motion[bones.ends])
+    return _at(by.joints, motion), b + jnp.einsum("bij,bj->bi", by.share, a - b) - free
+
+
+def _about_origin(p: Array, wrench: Array) -> Array:
+    """Return wrenches (..., 6) about points (..., 3) as they are about the origin."""
+    force = wrench[..., :3]
+    return jnp.concatenate([force, wrench[..., 3:] + jnp.cross(p, force)], -1)
+
+
+def _at(p: Array, motion: Array) -> Array:
+    """Return motions (..., 6) about the origin as they are at points (..., 3)."""
+    turn = motion[..., 3:]
+    return jnp.concatenate([motion[..., :3] + jnp.cross(turn, p), turn], -1)
 
 
 def moved(state: State, joints: Array, middles: Array) -> State:
-    """Return a state after a step (J, 6), (B, 6): translation in space, rotation in the body."""
-    step = lambda pose, x: Pose(pose.R @ exp_so3(x[..., 3:]), pose.p + x[..., :3])  # noqa: E731
-    return State(step(state.joints, joints), step(state.middles, middles))
+    """Return a state after motions of joints (J, 6) and middles (B, 6), as `solve` tells them."""
+    return State(_after(state.joints, joints), _after(state.middles, middles))
+
+
+def _after(pose: Pose, motion: Array) -> Pose:
+    return Pose(exp_so3(motion[..., 3:]) @ pose.R, pose.p + motion[..., :3])
 
 
 def exact_stiffness(bones: Skeleton, el: Elements, state: State) -> Array:
-    """Return the whole stiffness (6 J + 6 B, ...), the fixed joint's rows and columns being unity.
+    """Return how forces change with motions: (6 J + 6 B, ...), 1 for the fixed joint itself.
 
     With the terms that Gauss-Newton leaves out: by it equilibria change with what they depend on.
     """
     here = halves(bones, state)
 
     def shifted(x: Array) -> Array:
-        # A half's middle turns about its own axes, which the second half sees upside down.
-        turn = jnp.einsum("hij,hbj->hbi", FLIP, x[..., 9:])
-        joint = Pose(here.joint.R @ exp_so3(x[..., 3:6]), here.joint.p + x[..., :3])
-        middle = Pose(here.middle.R @ exp_so3(turn), here.middle.p + x[..., 6:9])
-        return _forces(el, Halves(joint, middle))[0]
+        at = Halves(_after(here.joint, x[..., :6]), _after(here.middle, x[..., 6:]))
+        return jnp.concatenate(_forces(el, at)[0], -1)
 
     zero = jnp.zeros((*bones.ends.shape, 12))
     push = lambda e: jax.jvp(shifted, (zero,), (jnp.broadcast_to(e, zero.shape),))[1]  # noqa: E731
     blocks = jnp.moveaxis(jax.vmap(push)(jnp.eye(12)), 0, -1)  # (2, B, 12, 12)
     joints, beams = len(el.weight), bones.ends.shape[1]
     six = jnp.arange(6)
+    middle = 6 * (joints + jnp.arange(beams))[None, :, None] + six
     index = jnp.concatenate(
-        [
-            6 * bones.ends[..., None] + six,
-            jnp.broadcast_to(
-                6 * (joints + jnp.arange(beams))[None, :, None] + six, zero[..., :6].shape
-            ),
-        ],
-        -1,
+        [6 * bones.ends[..., None] + six, jnp.broadcast_to(middle, zero[..., :6].shape)], -1
     )
     size = 6 * (joints + beams)
     whole = jnp.zeros((size, size)).at[index[..., :, None], index[..., None, :]].add(blocks)
@@ -240,14 +289,14 @@ def _settled(
     weight = jnp.linalg.solve(exact_stiffness(bones, el, state).T, right)
     split = weight[: 6 * count].reshape(-1, 6), weight[6 * count :].reshape(-1, 6)
 
-    def forces(el: Elements, held: Pose) -> tuple[Array, Array]:
+    def forces(el: Elements, held: Pose) -> Forces:
         set_held = lambda x, y: x.at[bones.fixed].set(y)  # noqa: E731
         at = State(jax.tree.map(set_held, state.joints, held), state.middles)
         return _gathered(bones, el, _forces(el, halves(bones, at))[0])
 
     # The fixed joint stays where it was put: what depends on it depends on where it began.
     held = jax.tree.map(lambda x: x[bones.fixed], state.joints)
-    bar_el, bar_held = jax.vjp(forces, el, held)[1]((-split[0], -split[1]))
+    bar_el, bar_held = jax.vjp(forces, el, held)[1](Forces(-split[0], -split[1]))
     begun = jax.tree.map(jnp.zeros_like, state)
     joints = jax.tree.map(
         lambda zero, b, own: zero.at[bones.fixed].set(b + own[bones.fixed]),
@@ -266,12 +315,30 @@ def iterate(
 ) -> tuple[State, Array]:
     """Iterate until nothing moves by more than a tolerance (mm); return the last motion, too."""
 
-    def once(carry: tuple[State, Array, Array]) -> tuple[State, Array, Array]:
-        state, _, count = carry
-        joints, middles = solve(bones, balance(bones, el, state))
+    def stepped(state: State, forces: Forces, by: Factors) -> tuple[State, Array]:
+        joints, middles = solve(bones, forces, by)
         way = jnp.maximum(jnp.abs(joints[:, :3]).max(), jnp.abs(middles[:, :3]).max())
         less = jnp.minimum(1.0, LONGEST / jnp.maximum(way, 1e-9))
-        return moved(state, less * joints, less * middles), way, count + 1
+        return moved(state, less * joints, less * middles), way
+
+    def once(carry: tuple[State, Array, Array]) -> tuple[State, Array, Array]:
+        state, _, count = carry
+        forces, by = balance(bones, el, state)
+
+        def again(carry: tuple[State, Array, Array, Array]) -> tuple[State, Array, Array, Array]:
+            state, before, _, k = carry
+            each = _forces(el, halves(bones, state))[0]
+            state, way = stepped(state, _gathered(bones, el, each), by)
+            return state, way, way > SLOW * before, k + 1
+
+        def going(carry: tuple[State, Array, Array, Array]) -> Array:
+            _, way, slow, k = carry
+            return (way > tolerance) & ~slow & (k < AGAIN)
+
+        state, way = stepped(state, forces, by)
+        begin = (state, way, (way > NEAR) | (count > EARLY), jnp.array(0))
+        state, way, _, _ = jax.lax.while_loop(going, again, begin)
+        return state, way, count + 1
 
     def going(carry: tuple[State, Array, Array]) -> Array:
         return (carry[1] > tolerance) & (carry[2] < most)

@@ -80,6 +80,7 @@ def _inverse_left(x: np.ndarray) -> np.ndarray:
 
 LOGARITHM = _fitted(_angle_over_sine, (1 - np.cos(WIDEST)) / 2, 18)
 INVERSE = _fitted(_inverse_left, WIDEST**2, 10)
+INVERSE_SLOPE = tuple(n * c for n, c in enumerate(INVERSE))[1:]
 
 
 def polynomial(coefficients: Sequence[float], x: Array) -> Array:
@@ -130,15 +131,19 @@ def adjoint(pose: Pose) -> Array:
     return jnp.concatenate([top, jnp.concatenate([zero, R], -1)], -2)
 
 
-def inverse_right(x: Array) -> Array:
-    """Return how the logarithm (..., 6) changes with a twist at its end: (..., 6, 6).
+def inverse_right(x: Array) -> tuple[Array, Array]:
+    """Return how the logarithm (..., 6) changes with a twist at its end, as blocks (..., 3, 3).
 
-    The series of Bernoulli numbers, right to 1e-6 at a turn of one radian.
+    The whole is [[J, D], [0, J]]: J is that of the rotation, D its derivative along the
+    translation. With W, U the cross products with w, u: J = I + W/2 + k(w.w) W W.
     """
-    u, w = hat(x[..., :3]), hat(x[..., 3:])
-    zero = jnp.zeros_like(u)
-    ad = jnp.concatenate([jnp.concatenate([w, u], -1), jnp.concatenate([zero, w], -1)], -2)
-    two = ad @ ad
-    four = two @ two
-    series = two / 12 - four / 720 + four @ two / 30240 - four @ four / 1209600
-    return jnp.eye(6) + ad / 2 + series
+    u, w = x[..., :3], x[..., 3:]
+    square, both = (w * w).sum(-1)[..., None, None], (u * w).sum(-1)[..., None, None]
+    k, slope = polynomial(INVERSE, square), polynomial(INVERSE_SLOPE, square)
+    mixed = w[..., :, None] * u[..., None, :]
+    twice = w[..., :, None] * w[..., None, :] - square * jnp.eye(3)  # W W
+    crossed = mixed + jnp.swapaxes(mixed, -1, -2) - 2 * both * jnp.eye(3)  # W U + U W
+    return (
+        jnp.eye(3) + hat(w) / 2 + k * twice,
+        hat(u) / 2 + k * crossed + 2 * both * slope * twice,
+    )

@@ -6,7 +6,7 @@ import jax
 import jax.numpy as jnp
 
 from simulearn.material import Material
-from simulearn.mechanics.equilibrium import Elements, State, settle
+from simulearn.mechanics.equilibrium import Elements, State, inverse_of_blocks, settle
 from simulearn.mechanics.poses import Array, Pose
 from simulearn.mechanics.section import Law, in_s, rest
 from simulearn.mechanics.skeleton import Flat, Skeleton
@@ -52,7 +52,7 @@ def elements(
     body = load.body * gravity
     return Elements(
         rest=free,
-        stiffness=jnp.linalg.inv(compliance),
+        stiffness=inverse_of_blocks(compliance),
         face=plan.face * (1 + in_s(law.plane, s)),
         frame=plan.frame,
         length=plan.length / 2,
@@ -95,7 +95,8 @@ def rollout(
         return (last, new), (new, way)
 
     begin = start(plan)
-    fresh = jnp.array([1.0] + [0.0] * (STEPS - 1) + [1.0])  # a jump in gravity: no extrapolation
+    # No extrapolation over a jump in gravity.
+    fresh = jnp.array([1.0, 1.0] + [0.0] * (STEPS - 2) + [1.0])
     _, (states, ways) = jax.lax.scan(frame, (begin, begin), (el, fresh))
     return states, ways
 

@@ -1,0 +1,132 @@
+"""Gauss-Newton with whole steps for the actuators: the default.
+
+Single modifications tell how the vertices move with each joint and with each step of an actuator,
+which makes a linear model of the grid. For any set of actuator steps the joints' best answer to it
+is a damped least-squares problem with a closed form, so that thousands of sets are compared for the
+price of a matrix product: a beam search adds one step after another to the most promising sets. The
+best few, with three dampings, are simulated, and the best of those is where the next iteration
+begins. Actuators are whole steps all along: nothing is relaxed, nothing has to be snapped.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.inverse.problem import Found, Problem
+from simulearn.inverse.space import Space
+
+Array = NDArray[np.float64]
+
+PROBE = 1.0  # mm, that a joint is moved to see what follows
+WIDTH = 12  # sets that the beam search keeps
+DEPTH = 4  # steps of actuators in one iteration, at most
+SETS = 10  # sets that are simulated
+DAMPINGS = (0.1, 1.0, 10.0)  # times the present one
+LEAST, MOST = 1e-4, 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """How vertices move with a design, to first order.
+
+    Attributes:
+        joints: (N, P) per mm; N = 3 G, scaled by the roots of the weights.
+        steps: (Q, 2, N) of one step up, one step down; NaN where that is not valid.
+    """
+
+    joints: Array
+    steps: Array
+
+
+def newton(problem: Problem, start: Found) -> Iterator[str]:
+    """Search from a design; yield what each iteration did."""
+    now, damping = start, 1.0
+    while damping < MOST:
+        slope = probed(problem, now)
+        x, a, rate = proposals(problem, now, slope, damping)
+        told = problem.points(x, a)
+        errors = problem.error(told)
+        k = int(errors.argmin())
+        if errors[k] < now.error:
+            stepped = int(round(np.abs(a[k] - now.a).sum() / problem.space.ratio))
+            moved = float(np.abs(x[k] - now.x).max(initial=0.0))
+            now = Found(x[k], a[k], told[k], float(errors[k]))
+            damping = max(LEAST, damping * rate[k])
+            yield f"{stepped} steps of actuators, joints by up to {moved:.1f} mm"
+        else:
+            damping *= 100
+            yield "smaller steps"
+
+
+def residual(problem: Problem, points: Array) -> Array:
+    """Return the distances (..., N) mm of points (..., G, 3) from their targets, weighted."""
+    goals = problem.goals
+    away = (points - goals.targets) * np.sqrt(goals.weights)[:, None]
+    return away.reshape(*away.shape[:-2], -1)
+
+
+def probed(problem: Problem, now: Found) -> Slope:
+    """Return the slopes at a design, from one batch of single modifications."""
+    space = problem.space
+    p, q = len(now.x), len(now.a)
+    dx = np.concatenate([PROBE * np.eye(p), np.zeros((2 * q, p))])
+    da = np.concatenate([np.zeros((p, q)), np.kron(np.eye(q), [[space.ratio], [-space.ratio]])])
+    told = residual(problem, problem.points(now.x + dx, now.a + da)) - residual(problem, now.points)
+    joints = np.nan_to_num(told[:p].T / PROBE)
+    return Slope(joints, told[p:].reshape(q, 2, -1))
+
+
+def proposals(
+    problem: Problem, now: Found, slope: Slope, damping: float
+) -> tuple[Array, Array, Array]:
+    """Return designs (T, P), (T, Q) that the linear model promises much of, and their dampings (T,)."""
+    space, J = problem.space, slope.joints
+    r = residual(problem, now.points)
+    x, a, rates = [], [], []
+    for rate in DAMPINGS:
+        gain = np.linalg.solve(J.T @ J + damping * rate * np.eye(J.shape[1]) / len(r), J.T)
+        left = np.eye(len(r)) - J @ gain
+        for steps in _sets(r, slope.steps, left, space, now.a):
+            moved = r + _moved(slope.steps, steps)
+            x.append(now.x - gain @ moved)
+            a.append(now.a + space.ratio * steps)
+            rates.append(rate)
+    return np.array(x), np.array(a), np.array(rates)
+
+
+def _moved(steps: Array, counts: NDArray[np.int64]) -> Array:
+    """Return how vertices move (N,) with counts (Q,) of steps."""
+    up, down = np.maximum(counts, 0), np.maximum(-counts, 0)
+    return np.einsum("q,qn->n", up, np.nan_to_num(steps[:, 0])) + np.einsum(
+        "q,qn->n", down, np.nan_to_num(steps[:, 1])
+    )
+
+
+def _sets(
+    r: Array, steps: Array, left: Array, space: Space, a: Array
+) -> list[NDArray[np.int64]]:
+    """Return the sets of steps (Q,) that leave the least, the joints' answer to each included."""
+    q = len(steps)
+    none = np.zeros(q, dtype=np.int64)
+    kept = {none.tobytes(): (float(r @ left @ r), none)}
+    front = [none]
+    for _ in range(DEPTH):
+        wider: dict[bytes, tuple[float, NDArray[np.int64]]] = {}
+        for counts in front:
+            base = r + _moved(steps, counts)
+            for sign, side in ((1, 0), (-1, 1)):
+                after = base + steps[:, side]
+                values = np.einsum("qn,nm,qm->q", after, left, after)
+                for k in np.flatnonzero(np.isfinite(values)):
+                    if counts[k] * sign < 0 or abs(a[k] + (counts[k] + sign) * space.ratio) > 1:
+                        continue
+                    more = counts.copy()
+                    more[k] += sign
+                    wider[more.tobytes()] = (float(values[k]), more)
+        best = sorted(wider.values(), key=lambda pair: pair[0])[:WIDTH]
+        front = [counts for _, counts in best]
+        kept |= {counts.tobytes(): (value, counts) for value, counts in best}
+    ranked = sorted(kept.values(), key=lambda pair: pair[0])
+    return [counts for _, counts in ranked[:SETS]]

@@ -1,0 +1,206 @@
+"""The space of designs: what of a grid may change, as coordinates of its own.
+
+A design is a point (x, a). Each of the P numbers x slides one joint, or a pair of partners, along a
+direction (mm from where the grid began); each of the Q numbers a is the ratio of one actuator, or
+of a pair. Symmetry is thus never lost, and methods of search see plain vectors.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.grid import Grid, TrainingRange, outline, validate
+from simulearn.inverse.task import Free
+from simulearn.learn.model import Designs
+from simulearn.material import Material, load_material
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+FLIPS = {"x": (-1.0, 1.0), "y": (1.0, -1.0), "xy": (-1.0, -1.0), "none": (1.0, 1.0)}
+CLOSE = 1e-9  # of ratios and lengths that are the same
+
+
+@dataclass(frozen=True)
+class Unit:
+    """Joints that move together.
+
+    Attributes:
+        joints: one, or two partners.
+        slides: the coordinates x that move them: two, or one on a line of symmetry.
+    """
+
+    joints: tuple[int, ...]
+    slides: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """What may change about a grid.
+
+    Attributes:
+        grid: the design at x = 0, its fixed joint at the origin.
+        motions: (P, J, 2) how a coordinate moves the joints, mm per mm.
+        units: the joints that move together.
+        groups: beams that have the same ratio.
+        move: step of a joint, mm.
+        ratio: step of a ratio.
+        training: what the engine has seen; designs beyond are not valid here, if the grid is not.
+    """
+
+    grid: Grid
+    motions: Array
+    units: tuple[Unit, ...]
+    groups: tuple[tuple[int, ...], ...]
+    move: float
+    ratio: float
+    training: TrainingRange | None = None
+
+    @classmethod
+    def of(cls, grid: Grid, free: Free, training: TrainingRange | None = None) -> "Space":
+        """Return the space of a grid.
+
+        Args:
+            grid: valid, without dangling beams.
+            free: what may change.
+            training: what the engine has seen.
+
+        Raises:
+            InputError: the grid is not valid, or nothing may change.
+        """
+        grid = grid.centred
+        material = load_material(grid.material)
+        report = validate(grid, material, training=training)
+        for error in report.errors:
+            raise InputError(f"the design to begin with: {error.message}")
+        motions, units = _motions(grid, free)
+        own = free.actuators
+        beams = range(len(grid.beams)) if own is None else sorted(set(own))
+        groups = _paired(list(beams), free.pairs.actuators)
+        for group in groups:
+            if len({float(grid.actuators[b]) for b in group}) > 1:
+                b, c = group
+                raise InputError(
+                    f"free.pairs.actuators has [{b}, {c}], whose ratios differ in the grid; "
+                    "partners have the same"
+                )
+        if not (units or groups):
+            raise InputError("free lets nothing change; name joints or actuators")
+        if report.warnings:
+            training = None  # it is beyond what was seen anyhow
+        return cls(grid, motions, units, groups, free.move, free.ratio, training)
+
+    @property
+    def start(self) -> tuple[Array, Array]:
+        """The point (P,), (Q,) of the grid itself."""
+        return np.zeros(len(self.motions)), self.grid.actuators[[g[0] for g in self.groups]]
+
+    def point(self, grid: Grid) -> tuple[Array, Array]:
+        """Return the point (P,), (Q,) of a grid of this space."""
+        away = grid.centred.joints - self.grid.joints
+        size = (self.motions**2).sum(axis=(1, 2))
+        x = np.einsum("pjc,jc->p", self.motions, away) / size
+        return x, grid.actuators[[g[0] for g in self.groups]]
+
+    def designs(self, x: Array, a: Array) -> Designs:
+        """Return the designs of points (T, P), (T, Q)."""
+        grid = self.grid
+        flat = grid.joints + np.einsum("tp,pjc->tjc", x, self.motions)
+        ratios = np.repeat(grid.actuators[None], len(a), axis=0)
+        for q, group in enumerate(self.groups):
+            ratios[:, group] = a[:, q, None]
+        return Designs(grid.beams, grid.fixed, flat, ratios, grid.material)
+
+    def grid_at(self, x: Array, a: Array) -> Grid:
+        """Return the grid of a point (P,), (Q,)."""
+        one = self.designs(x[None], a[None])
+        return Grid(one.flat[0], one.beams, one.actuators[0], one.fixed, one.material)
+
+    def valid(self, x: Array, a: Array) -> Mask:
+        """Return which of the points (T, P), (T, Q) are valid grids."""
+        return np.array([self._fits(*pair) for pair in zip(x, a, strict=True)], dtype=bool)
+
+    def net(self, x: Array) -> Array | None:
+        """Return the net lengths (B,) mm of the beams, or None if the joints lie impossibly."""
+        return self._layout(np.ascontiguousarray(x).tobytes())
+
+    def nearest(self, x: Array, a: Array) -> Array:
+        """Return the ratios (Q,) nearest to a that are whole steps, and long enough at x (P,)."""
+        steps = np.arange(-(1 // self.ratio), 1 // self.ratio + 1) * self.ratio
+        net = self.net(x)
+        least = self._shortest / net if net is not None else np.zeros(len(self.grid.beams))
+        near = [
+            min(
+                (r for r in steps if r == 0 or abs(r) >= least[list(group)].max() - CLOSE),
+                key=lambda r: abs(r - ratio),
+            )
+            for group, ratio in zip(self.groups, a, strict=True)
+        ]
+        return np.array(near, dtype=float)
+
+    @cached_property
+    def _material(self) -> Material:
+        return load_material(self.grid.material)
+
+    @property
+    def _shortest(self) -> float:
+        return self._material.limits.actuator_length
+
+    def _fits(self, x: Array, a: Array) -> bool:
+        if not (np.abs(a) <= 1 + CLOSE).all():
+            return False
+        net = self.net(x)
+        if net is None:
+            return False
+        ratios = np.abs(self.designs(x[None], a[None]).actuators[0])
+        return bool(((ratios == 0) | (ratios * net >= self._shortest - CLOSE)).all())
+
+    @cached_property
+    def _layout(self):  # type: ignore[no-untyped-def]
+        @lru_cache(maxsize=4096)
+        def layout(x: bytes) -> Array | None:
+            """Return the net lengths of a layout of joints without actuators, if it is valid."""
+            moved = self.grid_at(np.frombuffer(x), self.start[1])
+            bare = Grid(moved.joints, moved.beams, 0 * moved.actuators, moved.fixed, moved.material)
+            report = validate(bare, self._material, training=self.training)
+            if report.errors or (self.training is not None and report.warnings):
+                return None
+            ends = outline(bare, self._material.section).beams.mean(axis=2)
+            # The middle of a joint's side lies on the axis.
+            length: Array = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+            return length
+
+        return layout
+
+
+def _motions(grid: Grid, free: Free) -> tuple[Array, tuple[Unit, ...]]:
+    """Return how coordinates move the joints, and which coordinates belong together."""
+    own = free.joints
+    joints = range(len(grid.joints)) if own is None else sorted(set(own))
+    flip = np.array(FLIPS[free.pairs.flip])
+    alone = {pair[0] for pair in free.pairs.joints if pair[0] == pair[1]}
+    motions, units = [], []
+    for group in _paired([k for k in joints if k != grid.fixed], free.pairs.joints):
+        slides = []
+        for axis in np.eye(2):
+            if group[0] in alone and flip @ axis < 0:
+                continue  # it would leave the line of symmetry
+            slides.append(len(motions))
+            motion = np.zeros((len(grid.joints), 2))
+            motion[group[0]] = axis
+            if len(group) > 1:
+                motion[group[1]] = flip * axis
+            motions.append(motion)
+        if slides:
+            units.append(Unit(group, tuple(slides)))
+    return np.array(motions).reshape(-1, len(grid.joints), 2), tuple(units)
+
+
+def _paired(members: list[int], pairs: list[list[int]]) -> tuple[tuple[int, ...], ...]:
+    """Return the members in groups, partners together, in the order of their first."""
+    partner = {k: tuple(dict.fromkeys(pair)) for pair in pairs for k in pair}
+    groups = [partner.get(k, (k,)) for k in members]
+    return tuple(dict.fromkeys(groups))
