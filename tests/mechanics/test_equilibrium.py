@@ -10,7 +10,7 @@ from simulearn.material import load_material
 from simulearn.mechanics.equilibrium import (
     Elements,
     State,
-    _forces,
+    _pulls,
     _gathered,
     balance,
     exact_stiffness,
@@ -188,7 +188,7 @@ def test_forces_are_the_slope_of_the_energy(grid):
 
     zero = jnp.zeros((len(plan.centre), 6)), jnp.zeros((len(ratio), 6))
     slope = jax.grad(energy, (0, 1))(*zero)
-    told = _gathered(bones, el, _forces(el, halves(bones, state))[0])
+    told = _gathered(bones, el, _pulls(el, halves(bones, state)).forces)
     for a, b in zip(told, slope, strict=True):
         np.testing.assert_allclose(a, b, atol=2e-5 * float(jnp.abs(b).max()))
 
@@ -213,7 +213,7 @@ def test_the_exact_stiffness_is_how_forces_change(grid):
             jnp.asarray(scale * step[:count].reshape(-1, 6)),
             jnp.asarray(scale * step[count:].reshape(-1, 6)),
         )
-        joints, middles = _gathered(bones, el, _forces(el, halves(bones, at))[0])
+        joints, middles = _gathered(bones, el, _pulls(el, halves(bones, at)).forces)
         return np.concatenate([joints.ravel(), middles.ravel()])
 
     measured = (forces(1.0) - forces(-1.0)) / 2

@@ -14,7 +14,7 @@ import typer
 from rich.markup import escape
 
 from simulearn import __version__
-from simulearn.cli import dataset, fabricate, grids, learn  # noqa: F401  (they add their commands)
+from simulearn.cli import dataset, fabricate, grids, inverse, learn  # noqa: F401  (they add their commands)
 from simulearn.cli.base import app, err
 from simulearn.errors import ComputationError, InputError
 

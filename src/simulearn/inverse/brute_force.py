@@ -8,10 +8,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from simulearn.inverse.changes import changes
-from simulearn.inverse.problem import Found, Problem
+from simulearn.inverse.problem import Did, Found, Problem
 
 
-def brute_force(problem: Problem, start: Found) -> Iterator[str]:
+def brute_force(problem: Problem, start: Found) -> Iterator[Did]:
     """Search from a design; yield what each iteration did."""
     now = start
     while True:
@@ -24,4 +24,4 @@ def brute_force(problem: Problem, start: Found) -> Iterator[str]:
         if not errors[k] < now.error:
             return
         now = Found(x[k], a[k], told[k], float(errors[k]))
-        yield tried[k].words
+        yield Did(tried[k].words)

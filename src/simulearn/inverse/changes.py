@@ -62,7 +62,11 @@ def changes(space: Space, a: Array) -> list[Change]:
 
 
 def _named(part: str, indices: tuple[int, ...]) -> str:
-    return f"{part} {indices[0]}" if len(indices) == 1 else f"{part}s {' and '.join(map(str, indices))}"
+    return (
+        f"{part} {indices[0]}"
+        if len(indices) == 1
+        else f"{part}s {' and '.join(map(str, indices))}"
+    )
 
 
 def _way(space: Space, joint: int, dx: Array) -> str:

@@ -86,6 +86,16 @@ class Goals:
         """Return where the vertices are: (..., G, 3), given corners as `Vertex.of` takes them."""
         return np.stack([vertex.of(joints, sections) for vertex in self.vertices], axis=-2)
 
+    def matrix(self, joints: int, beams: int) -> Array:
+        """Return what makes the points (G, 3) of all corners: (G, 8 J + 12 B).
+
+        Corners are those of joints (J, 8), then those of sections (B, 3, 4), one after the other.
+        """
+        eye = np.eye(8 * joints + 12 * beams)
+        split = 8 * joints
+        of_joints = eye[:split].reshape(joints, 8, -1)
+        return self.points(of_joints, eye[split:].reshape(beams, 3, 4, -1))
+
     def distances(self, points: Array) -> Array:
         """Return the distances (..., G) mm of points (..., G, 3) from their targets."""
         away: Array = np.linalg.norm(points - self.targets, axis=-1)

@@ -10,11 +10,13 @@ begins. Actuators are whole steps all along: nothing is relaxed, nothing has to 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.inverse.problem import Found, Problem
+from simulearn.inverse.problem import Did, Found, Problem, residual
+from simulearn.inverse.relaxing import relaxed, rounded
 from simulearn.inverse.space import Space
 
 Array = NDArray[np.float64]
@@ -24,7 +26,9 @@ WIDTH = 12  # sets that the beam search keeps
 DEPTH = 4  # steps of actuators in one iteration, at most
 SETS = 10  # sets that are simulated
 DAMPINGS = (0.1, 1.0, 10.0)  # times the present one
-LEAST, MOST = 1e-4, 1e6
+LEAST = 1e-4
+GAIN, PATIENCE = 0.03, 1  # less is little; so many iterations of little are enough
+SHARE = 0.4  # of the actuators are drawn anew to begin again
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,31 +44,57 @@ class Slope:
     steps: Array
 
 
-def newton(problem: Problem, start: Found) -> Iterator[str]:
+def newton(problem: Problem, start: Found) -> Iterator[Did]:
     """Search from a design; yield what each iteration did."""
-    now, damping = start, 1.0
-    while damping < MOST:
+    x, a, begin = start.x, start.a, start
+    for k in count():
+        if problem.model is not None:
+            last = None
+            for last in relaxed(problem, x, a):
+                yield Did(f"actuators relaxed, {last[0].error:.2f} mm", whole=False)
+            found = rounded(problem, *last) if last else None
+            if found is not None:
+                begin = found
+                yield Did(f"actuators in whole steps, {begin.error:.2f} mm")
+            elif k:
+                begin = problem.best or start
+        yield from descent(problem, begin)
+        best = problem.best or start
+        again = problem.source.random(len(a)) < SHARE
+        a = np.where(again, 2 * problem.source.random(len(a)) - 1, best.a)
+        x = best.x
+        if problem.model is None:
+            begin = _nearby(problem, x, problem.space.nearest(x, a))
+
+
+def descent(problem: Problem, start: Found) -> Iterator[Did]:
+    """Go down from a design until little is gained; yield what each iteration did."""
+    now, damping, idle = start, 1.0, 0
+    while idle < PATIENCE:
         slope = probed(problem, now)
         x, a, rate = proposals(problem, now, slope, damping)
         told = problem.points(x, a)
         errors = problem.error(told)
         k = int(errors.argmin())
+        idle = 0 if errors[k] < (1 - GAIN) * now.error else idle + 1
         if errors[k] < now.error:
-            stepped = int(round(np.abs(a[k] - now.a).sum() / problem.space.ratio))
+            stepped = round(np.abs(a[k] - now.a).sum() / problem.space.ratio)
             moved = float(np.abs(x[k] - now.x).max(initial=0.0))
             now = Found(x[k], a[k], told[k], float(errors[k]))
             damping = max(LEAST, damping * rate[k])
-            yield f"{stepped} steps of actuators, joints by up to {moved:.1f} mm"
+            yield Did(f"{stepped} steps of actuators, joints by up to {moved:.1f} mm")
         else:
-            damping *= 100
-            yield "smaller steps"
+            damping *= 30
+            yield Did("nothing better nearby")
 
 
-def residual(problem: Problem, points: Array) -> Array:
-    """Return the distances (..., N) mm of points (..., G, 3) from their targets, weighted."""
-    goals = problem.goals
-    away = (points - goals.targets) * np.sqrt(goals.weights)[:, None]
-    return away.reshape(*away.shape[:-2], -1)
+def _nearby(problem: Problem, x: Array, a: Array) -> Found:
+    """Return a design to begin again from, or the best there is if that has no answer."""
+    found = problem.found(x, a)
+    if np.isfinite(found.error):
+        return found
+    assert problem.best is not None
+    return problem.best
 
 
 def probed(problem: Problem, now: Found) -> Slope:
@@ -81,7 +111,7 @@ def probed(problem: Problem, now: Found) -> Slope:
 def proposals(
     problem: Problem, now: Found, slope: Slope, damping: float
 ) -> tuple[Array, Array, Array]:
-    """Return designs (T, P), (T, Q) that the linear model promises much of, and their dampings (T,)."""
+    """Return designs (T, P), (T, Q) that the model promises much of, and their dampings (T,)."""
     space, J = problem.space, slope.joints
     r = residual(problem, now.points)
     x, a, rates = [], [], []
@@ -104,9 +134,7 @@ def _moved(steps: Array, counts: NDArray[np.int64]) -> Array:
     )
 
 
-def _sets(
-    r: Array, steps: Array, left: Array, space: Space, a: Array
-) -> list[NDArray[np.int64]]:
+def _sets(r: Array, steps: Array, left: Array, space: Space, a: Array) -> list[NDArray[np.int64]]:
     """Return the sets of steps (Q,) that leave the least, the joints' answer to each included."""
     q = len(steps)
     none = np.zeros(q, dtype=np.int64)

@@ -7,6 +7,7 @@ stopped at any moment and nothing is lost. No design that is not valid is ever s
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import monotonic
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,19 @@ Array = NDArray[np.float64]
 
 class OutOfTime(Exception):  # noqa: N818  (no error: the best so far is kept)
     """The time for searching is over."""
+
+
+@dataclass(frozen=True)
+class Did:
+    """What a method tells when it has got somewhere.
+
+    Attributes:
+        words: what it did.
+        whole: whether that was an iteration, or only a part of one.
+    """
+
+    words: str
+    whole: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +61,8 @@ class Problem:
         space: what may change.
         goals: what is wanted.
         places: where vertices come to; see `scoring`.
+        model: the learned simulator that tells it, for those who differentiate it.
+        source: of what is drawn at random.
         until: when to stop, by `now`.
         best: so far.
         designs: how many were scored.
@@ -55,6 +71,8 @@ class Problem:
     space: Space
     goals: Goals
     places: Places
+    model: Any = None
+    source: np.random.Generator = field(default_factory=lambda: drawing(0))
     until: float = np.inf
     now: Callable[[], float] = monotonic
     best: Found | None = None
@@ -80,6 +98,22 @@ class Problem:
             self.best = Found(x[k].copy(), a[k].copy(), told[k], float(errors[k]))
         return told
 
+    def loose(self, x: Array, a: Array) -> Array:
+        """Return where vertices come to when ratios are no whole steps: (T, G, 3) mm.
+
+        What is asked is no design, and not remembered; only learned engines answer.
+
+        Raises:
+            OutOfTime: before anything is computed.
+        """
+        self.going()
+        told = np.full((len(x), len(self.goals), 3), np.nan)
+        sound = np.flatnonzero([self.space.net(one) is not None for one in x])
+        if len(sound):
+            told[sound] = self.places(self.space.designs(x[sound], a[sound]))
+        self.designs += len(sound)
+        return told
+
     def error(self, points: Array) -> Array:
         """Return the errors (T,) mm of points (T, G, 3); infinite where there are none."""
         return np.nan_to_num(self.goals.error(points), nan=np.inf)
@@ -101,3 +135,18 @@ class Problem:
         """Raise OutOfTime when it is."""
         if self.now() > self.until:
             raise OutOfTime
+
+
+def drawing(seed: int) -> np.random.Generator:
+    """Return a source of random numbers that are the same on every machine."""
+    return np.random.Generator(np.random.Philox(seed))
+
+
+def residual(problem: Problem, points: Array) -> Array:
+    """Return the distances (..., N) mm of points (..., G, 3) from their targets, N = 3 G.
+
+    Scaled by the roots of the weights, for least squares.
+    """
+    goals = problem.goals
+    away = (points - goals.targets) * np.sqrt(goals.weights)[:, None]
+    return away.reshape(*away.shape[:-2], -1)

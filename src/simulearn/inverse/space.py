@@ -127,19 +127,20 @@ class Space:
         """Return the net lengths (B,) mm of the beams, or None if the joints lie impossibly."""
         return self._layout(np.ascontiguousarray(x).tobytes())
 
-    def nearest(self, x: Array, a: Array) -> Array:
-        """Return the ratios (Q,) nearest to a that are whole steps, and long enough at x (P,)."""
-        steps = np.arange(-(1 // self.ratio), 1 // self.ratio + 1) * self.ratio
+    def options(self, x: Array) -> list[Array]:
+        """Return the ratios that each actuator may have at joints x (P,): whole, long enough."""
+        count = int(1 / self.ratio + CLOSE)
+        steps: Array = self.ratio * np.arange(-count, count + 1, dtype=float)
         net = self.net(x)
-        least = self._shortest / net if net is not None else np.zeros(len(self.grid.beams))
-        near = [
-            min(
-                (r for r in steps if r == 0 or abs(r) >= least[list(group)].max() - CLOSE),
-                key=lambda r: abs(r - ratio),
-            )
-            for group, ratio in zip(self.groups, a, strict=True)
-        ]
-        return np.array(near, dtype=float)
+        if net is None:
+            return [steps for _ in self.groups]
+        least = [float(self._shortest / net[list(group)].min()) for group in self.groups]
+        return [steps[(steps == 0) | (np.abs(steps) >= some - CLOSE)] for some in least]
+
+    def nearest(self, x: Array, a: Array) -> Array:
+        """Return the ratios (Q,) nearest to a that an actuator may have at joints x (P,)."""
+        pairs = zip(self.options(x), a, strict=True)
+        return np.array([some[np.abs(some - ratio).argmin()] for some, ratio in pairs], dtype=float)
 
     @cached_property
     def _material(self) -> Material:
@@ -182,7 +183,8 @@ def _motions(grid: Grid, free: Free) -> tuple[Array, tuple[Unit, ...]]:
     joints = range(len(grid.joints)) if own is None else sorted(set(own))
     flip = np.array(FLIPS[free.pairs.flip])
     alone = {pair[0] for pair in free.pairs.joints if pair[0] == pair[1]}
-    motions, units = [], []
+    motions: list[Array] = []
+    units = []
     for group in _paired([k for k in joints if k != grid.fixed], free.pairs.joints):
         slides = []
         for axis in np.eye(2):

@@ -99,7 +99,7 @@ class Task(_Part):
         limits: when to stop.
     """
 
-    schema_: Literal["simulearn.task/1"] = Field(alias="schema", default=SCHEMA)
+    schema_: Literal["simulearn.task/1"] = Field(alias="schema", default="simulearn.task/1")
     grid: dict[str, Any]
     goals: Annotated[list[Goal], Field(min_length=1)]
     free: Free = Free()
@@ -235,9 +235,7 @@ def _check(task: Task, grid: Grid) -> None:
         for k in flat:
             if flat.count(k) > 1:
                 raise InputError(f"{where} has {k} in two pairs; it has one partner")
-            if (allowed is not None and k not in allowed) or (
-                name == "joints" and k == grid.fixed
-            ):
+            if (allowed is not None and k not in allowed) or (name == "joints" and k == grid.fixed):
                 raise InputError(f"{where} has {k}, which is not free to change")
 
 

@@ -206,7 +206,7 @@ def weights(
     keys = iter(jax.random.split(key, 4 + 2 * rounds))
 
     def layer(inner: int, outer: int, scale: float = 1.0) -> tuple[Array, Array]:
-        spread = scale / np.sqrt(inner)
+        spread = float(scale / np.sqrt(inner))  # a NumPy scalar would make it double precision
         values = jax.random.normal(next(keys), (inner, outer), jnp.float32) * spread
         return values, jnp.zeros(outer, jnp.float32)
 

@@ -14,12 +14,12 @@ from simulearn.learn import local, stresses
 from simulearn.material import Material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.equilibrium import Elements, State, settle, twists
-from simulearn.mechanics.poses import Array, exp_se3
+from simulearn.mechanics.poses import Array, Pose, exp_se3
 from simulearn.mechanics.rollout import RELEASED, Loads, every_frame, rollout
 from simulearn.mechanics.section import Law
 from simulearn.mechanics.skeleton import Flat, Skeleton
 
-TOLERANCE = 0.02  # mm, of the last motion; what is left after it is far less
+TOLERANCE = 0.05  # mm, of the last motion; what is left after it is far less
 MOST = 25  # iterations
 
 
@@ -74,6 +74,37 @@ def first(
     return states, jax.vmap(lambda e, state: twists(bones, e, state))(el, states), ways
 
 
+def resettled(
+    bones: Skeleton, el: Elements, begun: State, tolerance: float
+) -> tuple[State, Array]:
+    """Return the equilibria of corrected elements in all frames (11), and the last motions.
+
+    Each begins where the first shape is, moved on as in the frame before.
+    """
+
+    def frame(
+        carry: tuple[State, State], now: tuple[Elements, State]
+    ) -> tuple[tuple[State, State], tuple[State, Array]]:
+        (before, after), (here, first) = carry, now
+        state, way = settle(bones, here, _likewise(before, after, first), tolerance, MOST)
+        return (first, state), (state, way)
+
+    start = jax.tree.map(lambda x: x[0], begun)
+    return jax.lax.scan(frame, (start, start), (el, begun))[1]
+
+
+def _likewise(before: State, after: State, first: State) -> State:
+    """Return a state moved as another was."""
+
+    def go(a: Pose, b: Pose, c: Pose) -> Pose:
+        return Pose(b.R @ jnp.swapaxes(a.R, -1, -2) @ c.R, c.p + b.p - a.p)
+
+    return State(
+        go(before.joints, after.joints, first.joints),
+        go(before.middles, after.middles, first.middles),
+    )
+
+
 def shapes(
     parameters: Parameters,
     bones: Skeleton,
@@ -107,10 +138,7 @@ def shapes(
             return local.answer(network, bones, seen)
 
         told = jax.vmap(tell)(begun, strains, released, load.gravity)
-        el = corrected(bare, told)
-        ended, again = jax.vmap(lambda e, state: settle(bones, e, state, tolerance, MOST))(
-            el, begun
-        )
+        ended, again = resettled(bones, corrected(bare, told), begun, tolerance)
 
     def corners(state: State, s: Array, face: Array, middle: Array) -> tuple[Array, Array]:
         return placed(bones, plan, state, *local_corners(law, bones, plan, s, face, middle))

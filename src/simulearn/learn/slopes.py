@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from simulearn.learn.equilibrium import CONVERGED, Equilibrium
 from simulearn.learn.model import Designs
-from simulearn.learn.shapes import Parameters, shapes
+from simulearn.learn.shapes import TOLERANCE, Parameters, shapes
 from simulearn.material import load_material
 from simulearn.mechanics.poses import Array
 from simulearn.mechanics.rollout import loads
@@ -41,7 +41,13 @@ class Slopes(NamedTuple):
     converged: NDArray[np.bool_]
 
 
-def slopes(model: Equilibrium, designs: Designs, cost: Cost, given: Any) -> Slopes:
+def slopes(
+    model: Equilibrium,
+    designs: Designs,
+    cost: Cost,
+    given: Any,
+    tolerance: float = TOLERANCE,
+) -> Slopes:
     """Return costs of designs of one topology, and how they change with the designs.
 
     Args:
@@ -50,9 +56,11 @@ def slopes(model: Equilibrium, designs: Designs, cost: Cost, given: Any) -> Slop
         cost: (joints (J, 8, 3), sections (B, 3, 4, 3), given) -> (), in terms of JAX; a function
             of a module, since it is compiled once.
         given: arrays that the cost goes by, the same for all designs.
+        tolerance: of the last motion of an iteration, mm; costs that are to be compared with each
+            other need a tight one.
     """
     bones = skeletons(designs.beams, designs.fixed, designs.flat)
-    kernel = _kernel(model.material, cost)
+    kernel = _kernel(model.material, cost, tolerance)
     parameters = model.parameters._replace(stress=None)
     parts = []
     for t in range(len(designs)):
@@ -63,7 +71,7 @@ def slopes(model: Equilibrium, designs: Designs, cost: Cost, given: Any) -> Slop
 
 
 @lru_cache
-def _kernel(material: str, cost: Cost) -> Any:
+def _kernel(material: str, cost: Cost, tolerance: float) -> Any:
     """Return the compiled function: parameters, skeleton, joints, ratios, given -> slopes."""
     data = load_material(material)
     load = loads(data)
@@ -72,7 +80,7 @@ def _kernel(material: str, cost: Cost) -> Any:
         design: tuple[Array, Array], parameters: Parameters, bones: Skeleton, given: Any
     ) -> tuple[Array, Array]:
         plan = flat(bones, design[0], data.section)
-        told = shapes(parameters, bones, plan, design[1], load, data)
+        told = shapes(parameters, bones, plan, design[1], load, data, tolerance)
         return cost(told.joints[-1], told.sections[-1], given), told.way
 
     @jax.jit

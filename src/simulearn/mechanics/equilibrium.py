@@ -1,13 +1,12 @@
 """Equilibrium of a grid of halves of beams between joints, by Gauss-Newton with elimination.
 
 Each half stores d.K.d / 2, d being the twist by which its middle has left its place at rest:
-exact for any rotation, and for the constant strains of the rest itself. A beam is two such springs
-in series; its middle is eliminated, and a 6 x 6 stiffness between two joints remains. Told about
-the origin in the axes of space, a spring pulls both of its joints by the same wrench, so the
-matrix of the joints is the Laplacian of the grid, with these stiffnesses for weights.
+exact for any rotation, and for the constant strains of the rest itself. Middles of beams are
+eliminated in 6 x 6 blocks; only joints remain.
 
-The stiffness of second order in d is left out: the iteration then always goes downhill. Near
-the end it goes on with the factors it has.
+Far from equilibrium the stiffness is Gauss-Newton's, with which every step goes downhill; near it
+the stiffness of forces that turn is added, up to terms of second order in d, without which slender
+grids converge slowly. Old factors are used again where they do.
 """
 
 from functools import partial
@@ -24,10 +23,10 @@ UP = jnp.array([0.0, 0.0, 1.0])
 # The axes of a beam's middle as its two halves see them.
 FLIP = jnp.stack([jnp.eye(3), jnp.diag(jnp.array([-1.0, -1.0, 1.0]))])
 LONGEST = 15.0  # mm, that anything may move in one step
-NEAR = 1.0  # mm, the motion below which old factors do
+NEAR = 3.0  # mm, the motion below which the stiffness of forces is added
+CLOSE = 1.0  # mm, the motion below which old factors are tried
 AGAIN = 4  # steps with the same factors, at most
-EARLY = 4  # steps with fresh factors, after which no old ones are tried
-SLOW = 0.4  # of the step before; where a step is longer, new factors are needed
+SLOW = 0.3  # of the step before; where a step is longer, new factors are needed
 
 
 class State(NamedTuple):
@@ -106,22 +105,38 @@ def _block(a: Array, b: Array, c: Array, d: Array) -> Array:
     return jnp.concatenate([jnp.concatenate([a, b], -1), jnp.concatenate([c, d], -1)], -2)
 
 
-def _forces(el: Elements, at: Halves) -> tuple[Forces, Array]:
-    """Return the wrenches of each half on its joint and middle, and its `_change`."""
+class Pulls(NamedTuple):
+    """What the halves (2, B) do to their ends.
+
+    Attributes:
+        forces: on joints and middles, weight included.
+        change: (2, B, 6, 6) how twists change as middles move, in the axes of space.
+        wrench: (2, B, 6) elastic, on middles.
+        lever: (2, B, 3) first moment of the weight that joints carry, from their centres, N mm.
+    """
+
+    forces: Forces
+    change: Array
+    wrench: Array
+    lever: Array
+
+
+def _pulls(el: Elements, at: Halves) -> Pulls:
+    """Return the forces of halves and what their stiffness follows from."""
     d = _twists(el, at)
     change = _change(d, at)
     pull = jnp.einsum("hbji,hbjk,hbk->hbi", change, el.stiffness, d)
     # Weight, as a cubic deflection shares it between the ends.
-    lift = (el.length * el.line / 2)[:, None] * UP
+    share = (el.length * el.line / 2)[:, None]
     couple = (el.length**2 * el.line / 12)[:, None]
     face = jnp.einsum("hbij,hbj->hbi", at.joint.R, el.face)
     tangent = jnp.einsum("hbij,hbj->hbi", at.joint.R, el.frame[..., 0])
     force, moment = pull[..., :3], pull[..., 3:]
-    on_joint = jnp.cross(face, lift) + couple * jnp.cross(tangent, UP)
-    on_joint -= moment + jnp.cross(at.middle.p - at.joint.p, force)
+    lever, lift = share * face + couple * tangent, share * UP
+    on_joint = jnp.cross(lever, UP) - moment - jnp.cross(at.middle.p - at.joint.p, force)
     on_middle = moment - couple * jnp.cross(at.middle.R[..., 0], UP)
     both = (lift - force, on_joint), (lift + force, on_middle)
-    return Forces(*(jnp.concatenate(pair, -1) for pair in both)), change
+    return Pulls(Forces(*(jnp.concatenate(pair, -1) for pair in both)), change, pull, lever)
 
 
 def _gathered(bones: Skeleton, el: Elements, each: Forces) -> Forces:
@@ -136,37 +151,67 @@ class Factors(NamedTuple):
     Attributes:
         root: (6 J, 6 J) Cholesky factor of the joints' stiffness, about the origin.
         soft: (B, 6, 6) inverse of the stiffness that holds a middle.
-        share: (B, 6, 6) how far a middle follows its first joint; the rest of the way its second.
+        follow: (2, B, 6, 6) how a middle follows its joints.
         joints: (J, 3) where they were.
         middles: (B, 3).
     """
 
     root: Array
     soft: Array
-    share: Array
+    follow: Array
     joints: Array
     middles: Array
 
 
-def balance(bones: Skeleton, el: Elements, state: State) -> tuple[Forces, Factors]:
-    """Return the forces out of balance in a state, and the factors of its stiffness."""
-    each, change = _forces(el, halves(bones, state))
-    spring = jnp.swapaxes(change, -1, -2) @ el.stiffness @ change
-    soft = inverse_of_blocks(spring[0] + spring[1])
-    share = soft @ spring[0]
-    both = spring[0] - spring[0] @ share  # of the two in series
+def balance(
+    bones: Skeleton, el: Elements, state: State, whole: Array | float = 0.0
+) -> tuple[Forces, Factors]:
+    """Return the forces out of balance in a state, and the factors of its stiffness.
+
+    Args:
+        bones: how the grid hangs together.
+        el: halves and loads.
+        state: the poses.
+        whole: 1 to add the stiffness of forces that turn to Gauss-Newton's, which is that of 0.
+    """
+    pulls = _pulls(el, halves(bones, state))
+    spring = jnp.swapaxes(pulls.change, -1, -2) @ el.stiffness @ pulls.change
+    # exp(-a) exp(b) = exp(b - a - [a, b] / 2 ...), so a wrench W adds -W.[a, b] / 2 to the energy.
+    force, moment = hat(pulls.wrench[..., :3]), hat(pulls.wrench[..., 3:])
+    zero = jnp.zeros_like(force)
+    coupled = whole / 2 * _block(zero, force, force, moment) - spring  # of joints and middles
+    lift = whole / 2 * (el.length * el.line)[:, None, None] * hat(UP)
+    none = jnp.zeros_like(lift)
+    soft = inverse_of_blocks(spring[0] + spring[1] + _block(none, lift, -lift, none))
+    follow = -soft @ jnp.swapaxes(coupled, -1, -2)
     here = _from_origin(state.middles.p)
-    weight = jnp.swapaxes(here, -1, -2) @ both @ here
+    there = jnp.swapaxes(here, -1, -2)
+    own = there @ (spring + coupled @ follow) @ here
+    across = there @ coupled[0] @ follow[1] @ here
     a, b = 6 * bones.ends[..., None] + jnp.arange(6)
-    size = 6 * len(el.weight)
     rows, columns = jnp.stack([a, b, a, b])[..., None], jnp.stack([a, b, b, a])[..., None, :]
-    signed = jnp.array([1.0, 1.0, -1.0, -1.0])[:, None, None, None] * weight
-    matrix = jnp.zeros((size, size)).at[rows, columns].add(signed)
+    blocks = jnp.stack([own[0], own[1], across, jnp.swapaxes(across, -1, -2)])
+    size = 6 * len(el.weight)
+    matrix = jnp.zeros((size, size)).at[rows, columns].add(blocks)
+    six = 6 * jnp.arange(len(el.weight))[:, None] + jnp.arange(6)
+    carried = whole * _carried(bones, el, state, pulls)
+    matrix = matrix.at[six[..., None], six[:, None, :]].add(carried)
     held = 6 * bones.fixed + jnp.arange(6)
     matrix = matrix.at[held, :].set(0.0).at[:, held].set(0.0).at[held, held].set(1.0)
-    places = state.joints.p, state.middles.p
-    factors = Factors(jnp.linalg.cholesky(matrix), soft, share, *places)
-    return _gathered(bones, el, each), factors
+    factors = Factors(
+        jnp.linalg.cholesky(matrix), soft, follow, state.joints.p, state.middles.p
+    )
+    return _gathered(bones, el, pulls.forces), factors
+
+
+def _carried(bones: Skeleton, el: Elements, state: State, pulls: Pulls) -> Array:
+    """Return the stiffness (J, 6, 6), about the origin, of the weight that joints carry."""
+    total = el.weight.at[bones.ends].add(el.length * el.line / 2)
+    lever = (total[:, None] * state.joints.p).at[bones.ends].add(pulls.lever)
+    turn = (UP[:, None] * lever[:, None, :] + lever[..., None] * UP) / 2
+    turn -= lever[:, 2, None, None] * jnp.eye(3)
+    lift = total[:, None, None] / 2 * hat(UP)
+    return _block(jnp.zeros_like(turn), lift, -lift, turn)
 
 
 def _from_origin(p: Array) -> Array:
@@ -201,13 +246,12 @@ def solve(bones: Skeleton, forces: Forces, by: Factors) -> tuple[Array, Array]:
     A motion is a translation and a rotation in the axes of space, of a body about itself.
     """
     free = jnp.einsum("bij,bj->bi", by.soft, forces.middles)  # of a middle between held joints
-    first = jnp.einsum("bji,bj->bi", by.share, forces.middles)  # what its first joint takes
-    taken = jnp.stack([first, forces.middles - first])
+    taken = jnp.einsum("hbji,bj->hbi", by.follow, forces.middles)  # by its joints
     right = _about_origin(by.joints, forces.joints)
     right = right.at[bones.ends].add(_about_origin(by.middles, taken)).at[bones.fixed].set(0.0)
     motion = -cho_solve((by.root, True), right.ravel()).reshape(right.shape)
-    a, b = _at(by.middles, motion[bones.ends])
-    return _at(by.joints, motion), b + jnp.einsum("bij,bj->bi", by.share, a - b) - free
+    carried = jnp.einsum("hbij,hbj->bi", by.follow, _at(by.middles, motion[bones.ends]))
+    return _at(by.joints, motion), carried - free
 
 
 def _about_origin(p: Array, wrench: Array) -> Array:
@@ -240,7 +284,7 @@ def exact_stiffness(bones: Skeleton, el: Elements, state: State) -> Array:
 
     def shifted(x: Array) -> Array:
         at = Halves(_after(here.joint, x[..., :6]), _after(here.middle, x[..., 6:]))
-        return jnp.concatenate(_forces(el, at)[0], -1)
+        return jnp.concatenate(_pulls(el, at).forces, -1)
 
     zero = jnp.zeros((*bones.ends.shape, 12))
     push = lambda e: jax.jvp(shifted, (zero,), (jnp.broadcast_to(e, zero.shape),))[1]  # noqa: E731
@@ -292,7 +336,7 @@ def _settled(
     def forces(el: Elements, held: Pose) -> Forces:
         set_held = lambda x, y: x.at[bones.fixed].set(y)  # noqa: E731
         at = State(jax.tree.map(set_held, state.joints, held), state.middles)
-        return _gathered(bones, el, _forces(el, halves(bones, at))[0])
+        return _gathered(bones, el, _pulls(el, halves(bones, at)).forces)
 
     # The fixed joint stays where it was put: what depends on it depends on where it began.
     held = jax.tree.map(lambda x: x[bones.fixed], state.joints)
@@ -318,17 +362,20 @@ def iterate(
     def stepped(state: State, forces: Forces, by: Factors) -> tuple[State, Array]:
         joints, middles = solve(bones, forces, by)
         way = jnp.maximum(jnp.abs(joints[:, :3]).max(), jnp.abs(middles[:, :3]).max())
+        stable = jnp.isfinite(way)  # else the stiffness has no factor: stay
         less = jnp.minimum(1.0, LONGEST / jnp.maximum(way, 1e-9))
-        return moved(state, less * joints, less * middles), way
+        step = [jnp.where(stable, less * x, 0.0) for x in (joints, middles)]
+        return moved(state, *step), jnp.where(stable, way, jnp.inf)
 
     def once(carry: tuple[State, Array, Array]) -> tuple[State, Array, Array]:
-        state, _, count = carry
-        forces, by = balance(bones, el, state)
+        state, before, count = carry
+        whole = jnp.where(before < NEAR, 1.0, 0.0)
+        forces, by = balance(bones, el, state, whole)
 
         def again(carry: tuple[State, Array, Array, Array]) -> tuple[State, Array, Array, Array]:
             state, before, _, k = carry
-            each = _forces(el, halves(bones, state))[0]
-            state, way = stepped(state, _gathered(bones, el, each), by)
+            pulls = _pulls(el, halves(bones, state))
+            state, way = stepped(state, _gathered(bones, el, pulls.forces), by)
             return state, way, way > SLOW * before, k + 1
 
         def going(carry: tuple[State, Array, Array, Array]) -> Array:
@@ -336,12 +383,13 @@ def iterate(
             return (way > tolerance) & ~slow & (k < AGAIN)
 
         state, way = stepped(state, forces, by)
-        begin = (state, way, (way > NEAR) | (count > EARLY), jnp.array(0))
+        begin = (state, way, way > CLOSE, jnp.array(0))
         state, way, _, _ = jax.lax.while_loop(going, again, begin)
         return state, way, count + 1
 
     def going(carry: tuple[State, Array, Array]) -> Array:
         return (carry[1] > tolerance) & (carry[2] < most)
 
-    state, way, _ = jax.lax.while_loop(going, once, (state, jnp.array(jnp.inf), jnp.array(0)))
+    begin = (state, jnp.array(jnp.inf), jnp.array(0))
+    state, way, _ = jax.lax.while_loop(going, once, begin)
     return state, way

@@ -1,5 +1,6 @@
 """The grid morphing, as an animated GIF: a fixed view of all frames, still at both ends."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -32,18 +33,25 @@ def animate(
         width: of the pictures, inches.
         dpi: their pixels per inch.
     """
-    pictures = [Image.fromarray(pixels) for pixels in _pictures(result, camera, width, dpi)]
+    pictures = _pictures(result, camera, width, dpi)
+    write_gif(pictures, [PAUSE, *[PICTURE] * (len(pictures) - 2), PAUSE], path)
+
+
+def write_gif(
+    pictures: Sequence[NDArray[np.uint8]], durations: Sequence[int], path: Path | str
+) -> None:
+    """Write pictures (h, w, 3), each shown for so many ms, as a GIF without end."""
+    images = [Image.fromarray(pixels) for pixels in pictures]
     # One palette for all, or colours would flicker.
-    palette = _palette(pictures[-1])
-    frames = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in pictures]
-    durations = [PAUSE, *[PICTURE] * (len(frames) - 2), PAUSE]
+    palette = _palette(images[-1])
+    frames = [p.quantize(palette=palette, dither=Image.Dither.NONE) for p in images]
     with replacing(path) as temporary:
         frames[0].save(
             temporary,
             format="GIF",
             save_all=True,
             append_images=frames[1:],
-            duration=durations,
+            duration=list(durations),
             loop=0,
             optimize=False,
         )

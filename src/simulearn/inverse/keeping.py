@@ -1,0 +1,95 @@
+"""What a search leaves on disk, so that it can go on: its steps, written whole each time."""
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from simulearn.errors import InputError
+from simulearn.files import read_text, replacing
+from simulearn.grid import Grid
+from simulearn.inverse.task import Task, task_to_dict
+
+SCHEMA = "simulearn.search/1"
+COLUMNS = ("iteration", "phase", "seconds", "designs", "error_mm", "words")
+
+
+@dataclass(frozen=True)
+class Step:
+    """An iteration.
+
+    Attributes:
+        iteration: from 1; 0 is the design to begin with.
+        phase: 0 searching, 1 and more after so many corrections by finite elements.
+        seconds: of searching and checking, all runs together.
+        designs: scored so far.
+        error_mm: of the best so far, by the engine, against the targets of the phase.
+        words: what was done.
+        joints, actuators: of the best so far.
+    """
+
+    iteration: int
+    phase: int
+    seconds: float
+    designs: int
+    error_mm: float
+    words: str
+    joints: list[list[float]]
+    actuators: list[float]
+
+    def grid(self, like: Grid) -> Grid:
+        """Return the best grid so far, all else being as in another."""
+        return Grid(self.joints, like.beams, self.actuators, like.fixed, like.material)
+
+    def row(self) -> dict[str, Any]:
+        """Return what history files hold."""
+        return {name: getattr(self, name) for name in COLUMNS}
+
+
+def identity(task: Task, model: str | None) -> str:
+    """Return what names a search: all of the task but its limits, and the model."""
+    data = task_to_dict(task)
+    del data["limits"]
+    text = json.dumps([data, model], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def read_steps(folder: Path, name: str) -> list[Step]:
+    """Return the steps of an earlier run in a folder, none if there was none.
+
+    Args:
+        folder: of the search.
+        name: `identity` of the search.
+
+    Raises:
+        InputError: the folder holds another search, or its file is damaged.
+    """
+    path = folder / "search.json"
+    if not path.exists():
+        return []
+    try:
+        data = json.loads(read_text(path))
+        if data["schema"] != SCHEMA or not isinstance(data["steps"], list):
+            raise ValueError("another schema")
+        steps = [Step(**step) for step in data["steps"]]
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{path}: is damaged ({error}); name another folder") from error
+    if data["identity"] != name:
+        raise InputError(f"{path}: is the search of another task; name another folder")
+    return steps
+
+
+def write_steps(folder: Path, name: str, steps: list[Step]) -> None:
+    """Write the steps of a search, for going on (search.json) and for people (history.csv)."""
+    data = {"schema": SCHEMA, "identity": name, "steps": [asdict(step) for step in steps]}
+    with replacing(folder / "search.json") as temporary:
+        temporary.write_text(json.dumps(data) + "\n", encoding="utf-8")
+    lines = [",".join(COLUMNS)]
+    for s in steps:
+        words = s.words.replace('"', "'")
+        lines.append(
+            f'{s.iteration},{s.phase},{s.seconds:.2f},{s.designs},{s.error_mm:.4f},"{words}"'
+        )
+    with replacing(folder / "history.csv") as temporary:
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,0 +1,253 @@
+"""Pictures of inverse and hybrid design: errors, targets beside shapes, changes, suggestions.
+
+A target is a green ring with a dot; a line leads from it to the vertex that is wanted there.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from simulearn.grid import Grid
+from simulearn.inverse.goals import Goals
+from simulearn.inverse.keeping import Step
+from simulearn.inverse.ranking import Ranking, Suggestion
+from simulearn.show import style
+from simulearn.show.animation import PAUSE, write_gif
+from simulearn.show.camera import Camera
+from simulearn.show.deformed import draw_deformed, draw_skin, draw_triad
+from simulearn.show.deformed import extent as extent_deformed
+from simulearn.show.flat import draw_flat
+from simulearn.show.flat import extent as extent_flat
+from simulearn.simulate import Result, skin
+
+Array = NDArray[np.float64]
+
+TARGET = "#009e73"  # of Okabe and Ito's palette, as the actuators' colours are
+SPACING = 3.0  # mm, length of the quadrilaterals along a beam
+EACH = 220  # ms that a design is shown
+
+
+def error_curve(steps: Sequence[Step], error_fea_mm: float | None = None) -> Figure:
+    """Return the error of the best design against iterations and against designs.
+
+    Args:
+        steps: of a search.
+        error_fea_mm: of its answer by finite elements.
+    """
+    with style.paper():
+        figure = Figure(figsize=(7.2, 2.7), dpi=style.DPI, layout="constrained")
+        axes = figure.subplots(1, 2, sharey=True)
+        # A search that found its target exactly still has a place on the scale.
+        errors = [max(step.error_mm, 1e-3) for step in steps]
+        for ax, name, label in (
+            (axes[0], "iteration", "iteration"),
+            (axes[1], "designs", "designs simulated"),
+        ):
+            at = [getattr(step, name) for step in steps]
+            ax.step(at, errors, where="post", color=style.INK, lw=1.2)
+            ax.set_xlabel(label)
+            for a, b in pairwise(steps):
+                if a.phase != b.phase:
+                    ax.axvline(getattr(b, name), color=TARGET, lw=0.7, ls=":")
+            if error_fea_mm is not None:
+                ax.plot(at[-1], error_fea_mm, "o", color=TARGET, ms=4, clip_on=False)
+            ax.set_yscale("log")
+            ax.yaxis.set_major_formatter("{x:g}")
+            ax.yaxis.set_minor_formatter("")
+            ax.grid(axis="y", lw=0.3, color=style.GHOST_LINE)
+            ax.spines[["top", "right"]].set_visible(False)
+            ax.tick_params(which="both", labelsize=7)
+        axes[0].set_ylabel("fitting error, mm")
+        end = f"{steps[0].error_mm:.1f} mm to {steps[-1].error_mm:.2f} mm"
+        checked = (
+            "" if error_fea_mm is None else f"; by finite elements {error_fea_mm:.2f} mm (dot)"
+        )
+        axes[0].set_title(end + checked, fontsize=8, loc="left")
+    return figure
+
+
+def wanted(
+    result: Result, goals: Goals, error_mm: float, camera: Camera = Camera(), width: float = 5.2
+) -> Figure:
+    """Return the picture of a shape beside its targets.
+
+    Args:
+        result: the shape.
+        goals: what was wanted.
+        error_mm: of the shape.
+        camera: where the viewer is.
+        width: of the figure, inches.
+    """
+    with style.paper():
+        surface = skin(result, SPACING)
+        low, high = _around([extent_deformed(surface, camera, [0, -1])], goals, camera)
+        fig = Figure(figsize=(width, width), dpi=style.DPI)
+        ax, inch = style.footed(fig, low, high)
+        draw_deformed(ax, result, surface, -1, camera)
+        draw_goals(ax, goals, _points(result, goals), camera)
+        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
+        style.words(fig, f"{len(goals)} targets, mean distance {error_mm:.2f} mm ({result.engine})")
+        style.legend(fig)
+    return fig
+
+
+def draw_goals(
+    ax: Axes, goals: Goals, points: Array, camera: Camera, size: float = 5.0
+) -> list[Any]:
+    """Draw targets, and lines to where their vertices are (G, 3); return what was drawn."""
+    here, there = camera.see(points)[:, :2], camera.see(goals.targets)[:, :2]
+    drawn: list[Any] = []
+    for a, b in zip(here, there, strict=True):
+        drawn += ax.plot([a[0], b[0]], [a[1], b[1]], color=TARGET, lw=1.1, zorder=5)
+    ring: dict[str, Any] = {"ls": "none", "marker": "o", "color": TARGET, "clip_on": False}
+    drawn += ax.plot(*there.T, ms=size, mfc="none", mew=1.0, zorder=6, **ring)
+    drawn += ax.plot(*there.T, ms=0.28 * size, mew=0, zorder=6, **ring)
+    return drawn
+
+
+def changing(
+    results: Sequence[Result],
+    steps: Sequence[Step],
+    goals: Goals,
+    path: Path | str,
+    camera: Camera = Camera(),
+    width: float = 7.2,
+    dpi: int = 100,
+) -> None:
+    """Write the animation of a search: the flat design and its shape, iteration by iteration.
+
+    Args:
+        results: shapes of the best designs, in their order.
+        steps: the iterations that they come from.
+        goals: what is wanted.
+        path: of the GIF.
+        camera: where the viewer of the shapes is.
+        width: of the pictures, inches.
+        dpi: their pixels per inch.
+    """
+    surfaces = [skin(result, SPACING) for result in results]
+    flats = [extent_flat(result.grid) for result in results]
+    with style.paper():
+        left = _union(flats)
+        right = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
+        at, low, high = _beside(left, right)
+        pictures = []
+        for result, step, surface in zip(results, steps, surfaces, strict=True):
+            fig = Figure(figsize=(width, width), dpi=dpi)
+            canvas = FigureCanvasAgg(fig)
+            ax, _ = style.footed(fig, low, high)
+            draw_flat(ax, result.grid, False, at)
+            draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
+            draw_goals(ax, goals, _points(result, goals), camera)
+            style.words(fig, f"iteration {step.iteration}: {step.error_mm:.2f} mm")
+            style.legend(fig)
+            canvas.draw()
+            pictures.append(np.array(canvas.buffer_rgba())[..., :3])
+        write_gif(
+            pictures, [PAUSE, *[EACH] * (len(pictures) - 2), 2 * PAUSE][-len(pictures) :], path
+        )
+
+
+def cards(
+    ranking: Ranking, results: Sequence[Result], goals: Goals | None, camera: Camera = Camera()
+) -> Figure:
+    """Return the suggestions of a ranking as cards: change, predicted error, plan and shape.
+
+    Args:
+        ranking: whose suggestions.
+        results: of their grids.
+        goals: what is wanted, if anything.
+        camera: where the viewer of the shapes is.
+    """
+    surfaces = [skin(result, SPACING) for result in results]
+    with style.paper():
+        plans = _union([extent_flat(result.grid) for result in results])
+        shapes = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
+        across = max(float(b[0] - a[0]) for a, b in (plans, shapes))
+        tall = [float(b[1] - a[1]) / across for a, b in (plans, shapes)]
+        count, width = len(results), 1.75
+        size = (width * count, width * (sum(tall) + 0.1) + 0.95)
+        fig = Figure(figsize=size, dpi=style.DPI)
+        for k, (one, result, surface) in enumerate(
+            zip(ranking.best, results, surfaces, strict=True)
+        ):
+            top = 1 - 0.48 / size[1]
+            for (low, high), height in zip((plans, shapes), tall, strict=True):
+                share = width * height / size[1]
+                ax = fig.add_axes(((k + 0.04) / count, top - share, 0.92 / count, share))
+                middle = (low + high)[0] / 2
+                ax.set_xlim(middle - across / 2, middle + across / 2)
+                ax.set_ylim(low[1], high[1])
+                ax.set_aspect("equal")
+                ax.axis("off")
+                top -= share + 0.1 * width / size[1]
+                if ax is fig.axes[2 * k]:
+                    draw_flat(ax, result.grid, False)
+                    _mark(ax, one, ranking.grid)
+                else:
+                    draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
+                    if goals is not None:
+                        draw_goals(ax, goals, one.points, camera, 3.5)
+            x = (k + 0.06) / count
+            fig.text(x, 1 - 0.14 / size[1], f"{k + 1}  {one.change.words}", fontsize=7, va="center",
+                     fontweight="bold")  # fmt: skip
+            fig.text(x, 1 - 0.32 / size[1], _promise(ranking, one, goals), fontsize=7, va="center")
+        style.legend(fig)
+    return fig
+
+
+def _promise(ranking: Ranking, one: Suggestion, goals: Goals | None) -> str:
+    if goals is None:
+        return f"moves the joints by {one.moved_mm:.2f} mm"
+    return f"{ranking.error_mm:.2f} → {one.error_mm:.2f} mm"
+
+
+def _mark(ax: Axes, one: Suggestion, before: Grid) -> None:
+    """Ring the joints or beams that a suggestion changes; joints with where they were."""
+    after = one.grid
+    for k in one.change.indices:
+        if one.change.part == "joint":
+            (x, y), (u, v) = before.joints[k], after.joints[k]
+            ax.plot([x, u], [y, v], color=TARGET, lw=1.2, zorder=6)
+            ax.plot(x, y, "o", ms=2.5, color=TARGET, zorder=6)
+        else:
+            u, v = after.joints[after.beams[k]].mean(axis=0)
+        ax.plot(u, v, "o", ms=11, mfc="none", mew=1.2, color=TARGET, zorder=6, clip_on=False)
+
+
+def _points(result: Result, goals: Goals) -> Array:
+    return goals.points(result.joints[-1], result.beams[-1])
+
+
+def _around(
+    extents: Sequence[tuple[Array, Array]], goals: Goals | None, camera: Camera
+) -> tuple[Array, Array]:
+    """Return the lower left and upper right corner (2,) of extents and targets together."""
+    if goals is None:
+        return _union(extents)
+    seen = camera.see(goals.targets)[:, :2]
+    return _union([*extents, (seen.min(axis=0), seen.max(axis=0))])
+
+
+def _union(extents: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:
+    low, high = zip(*extents, strict=True)
+    return np.min(low, axis=0), np.max(high, axis=0)
+
+
+def _beside(
+    left: tuple[Array, Array], right: tuple[Array, Array]
+) -> tuple[tuple[float, float], Array, Array]:
+    """Return where the left picture goes, its middle at the right one's height, and the corners."""
+    gap = 0.1 * float(right[1][0] - right[0][0])
+    at = np.array(
+        [right[0][0] - gap - left[1][0], (right[0] + right[1] - left[0] - left[1])[1] / 2]
+    )
+    corners = np.array([left[0] + at, left[1] + at, *right])
+    return (float(at[0]), float(at[1])), corners.min(axis=0), corners.max(axis=0)
