@@ -1,7 +1,7 @@
 """Commands about learned models: train, evaluate."""
 
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,13 +18,13 @@ from simulearn.files import replacing
 
 if TYPE_CHECKING:
     from simulearn.learn.evaluate import Evaluation
-    from simulearn.learn.train import Row
 
 
 @app.command()
 def train(
     config: Annotated[
-        str, typer.Argument(metavar="CONFIG", help="A TOML file, or paper or small.")
+        str,
+        typer.Argument(metavar="CONFIG", help="A TOML file, or equilibrium, beams, paper, small."),
     ],
     output: Annotated[
         Path | None,
@@ -43,7 +43,7 @@ def train(
 ) -> None:
     """Train a model; the same command goes on where it was stopped."""
     from simulearn.dataset import read_dataset
-    from simulearn.learn.config import read_config
+    from simulearn.learn.config import Fit, read_config
 
     asked = read_config(config)
     folder = output or Path("runs") / (asked.name + ("-search" if search else ""))
@@ -56,6 +56,8 @@ def train(
     folder_of(folder)
     trials = read_dataset(source, "train")
     if search:
+        if isinstance(asked, Fit):
+            raise InputError("--search is for the kind paper; this configuration has no noise")
         from simulearn.learn.search import search as search_for
         from simulearn.show.learning import search_picture
 
@@ -70,26 +72,25 @@ def train(
             out.print(f"wrote {escape(str(folder))}/search.png, search.csv, search.json")
         return
     from simulearn.learn.run import run
-    from simulearn.show.learning import loss_picture
+    from simulearn.show.learning import loss_picture, stages_picture
 
-    def draw(rows: "Sequence[Row]", path: Path) -> None:
+    picture: Callable[[Any, str], Any] = stages_picture if isinstance(asked, Fit) else loss_picture
+
+    def draw(rows: Any, path: Path) -> None:
         with replacing(path) as temporary:
-            loss_picture(rows, asked.name).savefig(temporary)
+            picture(rows, asked.name).savefig(temporary)
 
     try:
         with _epochs(quiet=as_json) as told:
-            bundle, rows = run(asked, trials, folder, told, draw)
+            bundle, rows, percent = run(asked, trials, folder, told, draw)
     except KeyboardInterrupt:
-        err.print("stopped; whole epochs are kept, and the same command goes on")
+        err.print("stopped; what is finished is kept, and the same command goes on")
         raise
     if as_json:
-        figures = {"model": str(bundle.path), "validation_percent": rows[-1].validation_percent}
+        figures = {"model": str(bundle.path), "validation_percent": percent}
         print(json.dumps({**figures, "epochs": len(rows), "loss": rows[-1].loss}))
         return
-    out.print(
-        f"{len(rows)} epochs, mean vertex error of the trials set aside "
-        f"{rows[-1].validation_percent:.2f} % of dimension"
-    )
+    out.print(f"mean vertex error of the trials set aside {percent:.2f} % of dimension")
     out.print(f"wrote {escape(str(bundle.path))} and {escape(str(folder))}/loss.png, loss.csv")
 
 
@@ -209,14 +210,14 @@ def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def _epochs(quiet: bool) -> "Iterator[Callable[[Row | None, int, int], None]]":
+def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
     """Yield what a run tells: a bar on a terminal, a line for each epoch elsewhere."""
     if quiet:
         yield lambda row, done, total: None
         return
     if not err.is_terminal:
 
-        def line(row: "Row | None", done: int, total: int) -> None:
+        def line(row: Any, done: int, total: int) -> None:
             if row is not None:
                 err.print(_words(row) + f", {row.seconds:.0f} s")
 
@@ -234,7 +235,7 @@ def _epochs(quiet: bool) -> "Iterator[Callable[[Row | None, int, int], None]]":
     with Progress(*columns, console=err, transient=True, speed_estimate_period=600) as bar:
         task = bar.add_task("updates", total=None, words="")
 
-        def tell(row: "Row | None", done: int, total: int) -> None:
+        def tell(row: Any, done: int, total: int) -> None:
             bar.update(task, completed=done, total=total)
             if row is not None:
                 bar.update(task, words=_words(row))
@@ -242,7 +243,9 @@ def _epochs(quiet: bool) -> "Iterator[Callable[[Row | None, int, int], None]]":
         yield tell
 
 
-def _words(row: "Row") -> str:
+def _words(row: Any) -> str:
+    if hasattr(row, "stage"):
+        return f"{row.stage} {row.update}: loss {row.loss:.4g}"
     return (
         f"epoch {row.epoch}: loss {row.loss:.4g}, vertex error {row.validation_percent:.2f} % "
         "of dimension"

@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
@@ -117,12 +117,64 @@ class Config(_Data):
         raise IndexError(epoch)
 
 
+class Stage(_Data):
+    """A part of the fitting of a model that solves for equilibrium.
+
+    Attributes:
+        updates: of what is fitted.
+        batch: pairs of trial and frame in each.
+        rate: highest learning rate; it falls as a cosine.
+    """
+
+    updates: Count
+    batch: Count = 32
+    rate: Positive = 2e-3
+
+
+class Fit(_Data):
+    """The fitting of a model that solves for equilibrium, stage by stage; see `fit`.
+
+    Attributes:
+        name: what the model is called.
+        kind: of the model; "beams" has no network.
+        data: the packed data set; a relative path is relative to where the command runs.
+        calibration: the data set that the error estimate is fitted to, or none.
+        seed: of weights and order.
+        trials: how many to learn from at most; 0: all.
+        validation: of them, how many are set aside to watch the fitting by.
+        width, message, rounds: of the network; see `local.weights`.
+        law: fits the section.
+        network: fits the network that corrects it.
+        stress: fits the network that tells stresses.
+    """
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9._-]*$")]
+    kind: Literal["equilibrium", "beams"]
+    data: Annotated[str, Field(min_length=1)]
+    calibration: str | None = None
+    seed: Annotated[int, Field(ge=0)] = 0
+    trials: Annotated[int, Field(ge=0)] = 0
+    validation: Count = 32
+    width: Count = 64
+    message: Count = 16
+    rounds: Count = 2
+    law: Stage
+    network: Stage | None = None
+    stress: Stage | None = None
+
+    @model_validator(mode="after")
+    def _network_by_kind(self) -> "Fit":
+        if (self.kind == "equilibrium") != (self.network is not None):
+            raise ValueError("kind equilibrium has a network, kind beams has none")
+        return self
+
+
 def shipped() -> list[str]:
     """Return the names of the configurations that come with SimuLearn."""
     return sorted(path.stem for path in CONFIGS.glob("*.toml"))
 
 
-def read_config(name: Path | str) -> Config:
+def read_config(name: Path | str) -> Config | Fit:
     """Read the configuration of a run: a TOML file, or the name of one that comes with SimuLearn.
 
     Raises:
@@ -140,14 +192,16 @@ def read_config(name: Path | str) -> Config:
     return config_of(data, str(path))
 
 
-def config_of(data: Any, where: str) -> Config:
+def config_of(data: Any, where: str) -> Config | Fit:
     """Return the configuration of plain data.
 
     Raises:
         InputError: a key is unknown, missing or wrong.
     """
+    kind = data.get("kind") if isinstance(data, dict) else None
+    form = Fit if kind in ("equilibrium", "beams") else Config
     try:
-        return Config.model_validate(data)
+        return form.model_validate(data)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"])) or "the file"

@@ -17,13 +17,15 @@ from simulearn.errors import InputError
 from simulearn.learn import local
 from simulearn.learn.model import Designs, Frames
 from simulearn.learn.shapes import Parameters, Shapes, shapes
+from simulearn.learn.trust import Trust
 from simulearn.material import Material, load_material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.rollout import loads, start
 from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.skeleton import Flat, Skeleton, flat, skeletons
 
-CONVERGED = 0.05  # mm, the last motion of an iteration at most
+TRUST = ("trust.weights", "trust.ranges")
+CONVERGED = 0.1  # mm, the last motion of an iteration at most
 AT_ONCE = 8  # designs in one call of a kernel
 
 Weights = dict[str, NDArray[Any]]
@@ -36,13 +38,13 @@ class Equilibrium:
     Attributes:
         parameters: fitted.
         sizes: width, message and rounds of the networks.
-        trust: coefficients of the error estimate; see `bound`.
+        trust: the error estimate, or None.
         kind: "equilibrium" or "beams".
     """
 
     parameters: Parameters
     sizes: tuple[int, int, int] = (64, 16, 2)
-    trust: NDArray[np.float64] | None = None
+    trust: Trust | None = None
     kind: str = "equilibrium"
     material: str = field(default="pla-hot-water")
 
@@ -52,6 +54,16 @@ class Equilibrium:
 
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology; see `learn.model.Model`."""
+        told = self.told(designs)
+        corners = (told.joints, told.sections)
+        good = (told.way < CONVERGED) & np.all(
+            [np.isfinite(x).reshape(len(designs), -1).all(axis=1) for x in corners], axis=0
+        )
+        bound = None if self.trust is None else self.trust.bound(designs, told)
+        return Frames(*corners, told.stress, bound, np.asarray(good))  # type: ignore[arg-type]
+
+    def told(self, designs: Designs) -> Shapes:
+        """Return twelve frames of each design, and what the error estimate goes by."""
         count = len(designs)
         bones = skeletons(designs.beams, designs.fixed, designs.flat)
         kernel = partial(_kernel(self.material, self.kind), self._parameters)
@@ -69,22 +81,7 @@ class Equilibrium:
         # thread.
         told = [run(which) for which in parts]
         joined: Shapes = jax.tree.map(lambda *x: np.concatenate(x)[:count], *told)
-        whole = (joined.joints, joined.sections)
-        good = (joined.way < CONVERGED) & np.all(
-            [np.isfinite(x).reshape(count, -1).all(axis=1) for x in whole], axis=0
-        )
-        joints, sections = map(np.asarray, whole)
-        stress = None if joined.stress is None else np.asarray(joined.stress)
-        return Frames(joints, sections, stress, self.bound(designs, joined), good)
-
-    def bound(self, designs: Designs, told: Shapes) -> NDArray[np.float64] | None:
-        """Return the error that nine designs of ten stay below: (T,) mm, mean over the corners.
-
-        It grows with what the network had to correct, with strain, and with size.
-        """
-        if self.trust is None:
-            return None
-        return np.exp(signs_of_error(designs, told) @ self.trust)
+        return joined
 
     def config(self) -> dict[str, Any]:
         """Return the architecture."""
@@ -95,7 +92,7 @@ class Equilibrium:
         """Return law, networks and error estimate by name."""
         arrays = {name: np.asarray(x) for name, x in _named(self.parameters)}
         if self.trust is not None:
-            arrays["trust"] = np.asarray(self.trust)
+            arrays |= {"trust.weights": self.trust.weights, "trust.ranges": self.trust.ranges}
         return arrays
 
     @classmethod
@@ -110,10 +107,13 @@ class Equilibrium:
         sizes, key = (config["width"], config["message"], config["rounds"]), jax.random.key(0)
         network = any(name.startswith("network.") for name in arrays)
         stress = any(name.startswith("stress.") for name in arrays)
+        shape_of = lambda heads: jax.eval_shape(  # noqa: E731
+            lambda: local.weights(key, heads, *sizes)
+        )
         blank = Parameters(
             first_guess(),
-            local.weights(key, local.CORRECTIONS, *sizes) if network else None,
-            local.weights(key, local.STRESSES, *sizes) if stress else None,
+            shape_of(local.CORRECTIONS) if network else None,
+            shape_of(local.STRESSES) if stress else None,
         )
         expected = dict(_named(blank))
         for name, value in expected.items():
@@ -123,27 +123,19 @@ class Equilibrium:
                 raise InputError(
                     f"weight {name} has the shape {arrays[name].shape}, not {value.shape}"
                 )
-        if extra := arrays.keys() - expected.keys() - {"trust"}:
+        trust = {name: arrays[name] for name in TRUST if name in arrays}
+        if extra := arrays.keys() - expected.keys() - trust.keys():
             raise InputError(f"weight {min(extra)} does not belong to this architecture")
         tree = jax.tree.structure(blank)
         dtype = lambda name, x: np.asarray(arrays[name], x.dtype)  # noqa: E731
         filled = jax.tree.unflatten(tree, [dtype(n, x) for n, x in expected.items()])
-        trust = arrays.get("trust")
         return cls(
             filled,
             sizes,
-            None if trust is None else np.asarray(trust, np.float64),
+            Trust(*(np.asarray(x, np.float64) for x in trust.values())) if trust else None,
             "equilibrium" if network else "beams",
             str(config["material"]),
         )
-
-
-def signs_of_error(designs: Designs, told: Shapes) -> NDArray[np.float64]:
-    """Return what the error estimate goes by: (T, 5)."""
-    size = designs.dimensions
-    apart = np.log(np.maximum(told.apart, 1e-3))
-    strain = np.log(np.maximum(told.strain, 1e-3))
-    return np.stack([np.ones_like(size), apart, strain, np.log(size / 90), apart**2], axis=1)
 
 
 def _named(parameters: Parameters) -> list[tuple[str, Any]]:

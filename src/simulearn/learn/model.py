@@ -71,7 +71,10 @@ class Frames:
 class Model(Protocol):
     """A learned simulator."""
 
-    kind: str
+    @property
+    def kind(self) -> str:
+        """One of `KINDS`."""
+        ...
 
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology."""

@@ -1,54 +1,76 @@
-"""A run in its folder: checkpoint, loss curve, and the model at the end.
+"""A run in its folder: checkpoints, loss curve, and the model at the end.
 
-FOLDER/checkpoint.safetensors  replaced after every epoch
-FOLDER/loss.csv, loss.png      replaced after every epoch
+FOLDER/*.safetensors           checkpoints, replaced as the run goes on
+FOLDER/loss.csv, loss.png      likewise
 FOLDER/model/                  the bundle, at the end
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Any
 
 from simulearn.dataset import Dataset
 from simulearn.files import replacing
+from simulearn.learn import stages
 from simulearn.learn.bundle import Bundle, save_bundle
-from simulearn.learn.config import Config
-from simulearn.learn.train import Progress, Row, train
+from simulearn.learn.config import Config, Fit
+from simulearn.learn.fit import fit
+from simulearn.learn.model import Model
+from simulearn.learn.train import Row, split, train, validate
 
-Draw = Callable[[Sequence[Row], Path], None]
+Rows = Sequence[Row] | Sequence[stages.Row]
+Draw = Callable[[Any, Path], None]
+Progress = Callable[[Any, int, int], None]  # (last row or None, updates done, updates in all)
 
 
 def run(
-    config: Config, data: Dataset, folder: Path, progress: Progress, draw: Draw | None = None
-) -> tuple[Bundle, list[Row]]:
+    config: Config | Fit,
+    data: Dataset,
+    folder: Path,
+    progress: Progress,
+    draw: Draw | None = None,
+) -> tuple[Bundle, Rows, float]:
     """Train a model in a folder, or go on with one.
 
     Args:
         config: of the run.
         data: to learn from.
         folder: of the run; it exists.
-        progress: see `train.train`.
+        progress: called after every update and every row of the loss curve.
         draw: draws the loss curve into a file.
-    """
-    rows: list[Row] = []
 
-    def tell(row: Row | None, done: int, total: int) -> None:
-        if row is not None and row.epoch > len(rows):
+    Returns:
+        The model, the loss curve, and the mean vertex error of the trials set aside, % of
+        their dimension.
+    """
+    rows: list[Any] = []
+
+    def tell(row: Any, done: int, total: int) -> None:
+        if row is not None and row not in rows:
             rows.append(row)
             write_curve(rows, folder, draw)
         progress(row, done, total)
 
-    model, every = train(config, data, folder / "checkpoint.safetensors", tell)
+    model: Model
+    every: Rows
+    if isinstance(config, Fit):
+        model, every = fit(config, data, folder, tell)
+        percent = validate(model, split(config, data)[1])
+    else:
+        model, every = train(config, data, folder / "checkpoint.safetensors", tell)
+        percent = every[-1].validation_percent
     write_curve(every, folder, draw)
     bundle = save_bundle(folder / "model", model, config.name, data, config.model_dump(mode="json"))
-    return bundle, every
+    return bundle, every, percent
 
 
-def write_curve(rows: Sequence[Row], folder: Path, draw: Draw | None) -> None:
+def write_curve(rows: Rows, folder: Path, draw: Draw | None) -> None:
     """Write the loss curve."""
-    names = [field.name for field in fields(Row)]
+    names = [field.name for field in fields(rows[0])]
+    text = lambda value: value if isinstance(value, str) else f"{value:.6g}"  # noqa: E731
     lines = [",".join(names)]
-    lines += [",".join(f"{value:.6g}" for value in asdict(row).values()) for row in rows]
+    lines += [",".join(map(text, asdict(row).values())) for row in rows]
     with replacing(folder / "loss.csv") as temporary:
         temporary.write_text("\n".join(lines) + "\n", "utf-8")
     if draw is not None:

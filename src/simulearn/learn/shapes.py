@@ -40,6 +40,7 @@ class Shapes(NamedTuple):
         stress: (11, B, 4, 4, 6) MPa, or None if there is no network for it.
         way: () the last motion of an iteration, mm; large if there is no equilibrium.
         apart: () mean distance between the joints of the first shape and the last, last frame, mm.
+        sag: () mean way of the joints from the tenth frame to the last, in which they creep, mm.
         strain: () root of the mean square turn of the halves from rest, last frame, rad.
     """
 
@@ -48,6 +49,7 @@ class Shapes(NamedTuple):
     stress: Array | None
     way: Array
     apart: Array
+    sag: Array
     strain: Array
 
 
@@ -74,9 +76,7 @@ def first(
     return states, jax.vmap(lambda e, state: twists(bones, e, state))(el, states), ways
 
 
-def resettled(
-    bones: Skeleton, el: Elements, begun: State, tolerance: float
-) -> tuple[State, Array]:
+def resettled(bones: Skeleton, el: Elements, begun: State, tolerance: float) -> tuple[State, Array]:
     """Return the equilibria of corrected elements in all frames (11), and the last motions.
 
     Each begins where the first shape is, moved on as in the frame before.
@@ -152,6 +152,7 @@ def shapes(
         else strained(stress, bones, plan, ratio, load, material, bare, ended),
         jnp.maximum(ways.max(), again.max()),
         jnp.linalg.norm(ended.joints.p[-1] - begun.joints.p[-1], axis=-1).mean(),
+        jnp.linalg.norm(ended.joints.p[-1] - ended.joints.p[-2], axis=-1).mean(),
         jnp.sqrt((strains[-1, ..., 3:] ** 2).sum(-1).mean()),
     )
 

@@ -25,12 +25,13 @@ from simulearn.dataset.augment import mirrored, turned
 from simulearn.errors import ComputationError, InputError
 from simulearn.learn import checkpoint
 from simulearn.learn.aligning import aligned_batch
-from simulearn.learn.config import Config
+from simulearn.learn.config import Config, Fit
 from simulearn.learn.fitting import normalisers
 from simulearn.learn.flat import designs_of
 from simulearn.learn.graph import Topology
 from simulearn.learn.loss import Examples, Prepared, Weights, loss
 from simulearn.learn.metrics import errors, together
+from simulearn.learn.model import Model
 from simulearn.learn.network import Engine, Normalisers
 from simulearn.learn.paper import Paper
 
@@ -151,7 +152,7 @@ def train(
     return run.model, rows
 
 
-def split(config: Config, data: Dataset) -> tuple[list[Batch], list[Batch]]:
+def split(config: Config | Fit, data: Dataset) -> tuple[list[Batch], list[Batch]]:
     """Return the trials to learn from and those set aside, by topology.
 
     Raises:
@@ -174,13 +175,13 @@ def split(config: Config, data: Dataset) -> tuple[list[Batch], list[Batch]]:
     ]  # type: ignore[return-value]
 
 
-def validate(model: Paper, batches: Sequence[Batch]) -> float:
+def validate(model: Model, batches: Sequence[Batch]) -> float:
     """Return the mean vertex error of the last frame, % of dimension."""
     found = [errors(model.rollout(designs_of(batch)), batch) for batch in batches]
     return float(together(found).percent[:, -1].mean())
 
 
-def fingerprint(config: Config, data: Dataset) -> str:
+def fingerprint(config: Config | Fit, data: Dataset) -> str:
     """Return what a run must share with a checkpoint to go on with it."""
     told = config.model_dump(mode="json") | {"data": data.sha256}
     return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()

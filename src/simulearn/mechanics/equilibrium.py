@@ -198,9 +198,7 @@ def balance(
     matrix = matrix.at[six[..., None], six[:, None, :]].add(carried)
     held = 6 * bones.fixed + jnp.arange(6)
     matrix = matrix.at[held, :].set(0.0).at[:, held].set(0.0).at[held, held].set(1.0)
-    factors = Factors(
-        jnp.linalg.cholesky(matrix), soft, follow, state.joints.p, state.middles.p
-    )
+    factors = Factors(jnp.linalg.cholesky(matrix), soft, follow, state.joints.p, state.middles.p)
     return _gathered(bones, el, pulls.forces), factors
 
 
@@ -235,9 +233,10 @@ def _inverse_of_three(m: Array) -> Array:
     """Return the inverse of (..., 3, 3), whose columns are cross products of rows."""
     x, y, z = m[..., 0, :], m[..., 1, :], m[..., 2, :]
     first = jnp.cross(y, z)
-    return jnp.stack([first, jnp.cross(z, x), jnp.cross(x, y)], -1) / (x * first).sum(-1)[
-        ..., None, None
-    ]
+    return (
+        jnp.stack([first, jnp.cross(z, x), jnp.cross(x, y)], -1)
+        / (x * first).sum(-1)[..., None, None]
+    )
 
 
 def solve(bones: Skeleton, forces: Forces, by: Factors) -> tuple[Array, Array]:

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from simulearn.dataset import Batch
+from simulearn.learn import stages
 from simulearn.learn.evaluate import Evaluation
 from simulearn.learn.model import Frames
 from simulearn.learn.train import Row
@@ -60,6 +61,27 @@ def loss_picture(rows: Sequence[Row], name: str) -> Figure:
             for a, b in pairwise(rows):
                 if a.unroll != b.unroll:
                     ax.axvline(a.epoch + 0.5, color=style.INK, lw=0.6, ls=":")
+    return figure
+
+
+def stages_picture(rows: Sequence[stages.Row], name: str) -> Figure:
+    """Return the course of a fitting: the loss of each of its stages."""
+    parts = {
+        stage: [row for row in rows if row.stage == stage] for stage in {r.stage: 0 for r in rows}
+    }
+    with style.paper():
+        figure = Figure(figsize=(2.4 * len(parts) + 0.3, 2.6), dpi=style.DPI, layout="constrained")
+        for ax, (stage, part) in zip(
+            figure.subplots(1, len(parts), squeeze=False)[0], parts.items(), strict=True
+        ):
+            ax.plot([r.update for r in part], [r.loss for r in part], color=ANSWER, lw=1.2)
+            ax.set_yscale("log")
+            ax.yaxis.set_major_formatter("{x:g}")
+            ax.yaxis.set_minor_formatter("{x:g}")
+            ax.tick_params(which="both", labelsize=7)
+            ax.set_title(f"{name}: {stage}, {part[-1].loss:.3g}", fontsize=8, loc="left")
+            ax.set_xlabel("update")
+            _plain(ax)
     return figure
 
 

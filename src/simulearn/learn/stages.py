@@ -1,17 +1,12 @@
-"""Training of the models that solve for equilibrium, stage by stage.
+"""The stages of fitting a model that solves for equilibrium: its law, its network, its stresses.
 
-1. The law of the section, without a network.
-2. The first shapes of all trials by that law, which the network looks at.
-3. The network.
-4. The network for stresses, at the true poses.
-5. `beams` is the law alone.
-
+Each makes a loss at the true poses small (see `balance`), and can be stopped and gone on with.
 Everything random is drawn from the seed, the stage and the number of the update.
 """
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,9 +16,10 @@ import numpy as np
 import optax  # type: ignore[import-untyped]
 
 from simulearn.dataset import Batch
-from simulearn.errors import ComputationError
+from simulearn.errors import ComputationError, InputError
 from simulearn.learn import checkpoint, local, stresses
 from simulearn.learn.balance import loss, misses
+from simulearn.learn.config import Stage
 from simulearn.learn.shapes import Parameters, elastic, first
 from simulearn.learn.truth import Truth, truth
 from simulearn.material import Material
@@ -37,23 +33,6 @@ STEP = Law(0.01, 0.01, 0.01, 0.01, 0.02, 0.01, 0.01, 0.01, 0.3, 0.3)  # type: ig
 ROUND = 250  # updates between two checkpoints
 LATE = 0.3  # of the examples are of the last two frames
 AT_ONCE = 50  # trials whose first shapes are found together
-
-
-@dataclass(frozen=True)
-class Stage:
-    """What is fitted, and how long.
-
-    Attributes:
-        name: "law", "network" or "stress".
-        updates: of the weights.
-        batch: pairs of trial and frame in each.
-        rate: highest learning rate; it falls as a cosine.
-    """
-
-    name: str
-    updates: int
-    batch: int
-    rate: float
 
 
 @dataclass(frozen=True)
@@ -200,23 +179,32 @@ class Keeper:
     """Keeps checkpoints of a stage and tells how far it is.
 
     Args:
+        stage: its name.
         path: of the stage's checkpoint, or None.
         identity: of the run; a checkpoint of another is refused.
         tell: called with (row, updates done, updates in all).
     """
 
-    def __init__(self, path: Path | None, identity: str, tell: Tell) -> None:
-        self.path, self.identity, self.tell = path, identity, tell
+    def __init__(
+        self,
+        stage: str,
+        path: Path | None = None,
+        identity: str = "",
+        tell: Tell = lambda row, done, total: None,
+    ) -> None:
+        self.stage, self.path, self.identity, self.tell = stage, path, identity, tell
         self.rows: list[Row] = []
 
-    def load(self, run: Run, stage: Stage) -> tuple[Run, int]:
-        """Return the run as it was last kept, and its updates."""
+    def load(self, run: Run) -> tuple[Run, int]:
+        """Return the run as it was last kept, and its updates.
+
+        Raises:
+            InputError: the checkpoint is of another run.
+        """
         if self.path is None or not self.path.exists():
             return run, 0
         told = checkpoint.told(self.path)
-        if told.get("identity") != self.identity or told.get("stage") != stage.name:
-            from simulearn.errors import InputError
-
+        if told.get("identity") != self.identity or told.get("stage") != self.stage:
             raise InputError(
                 f"{self.path}: is of another run (its configuration or data differ); name another "
                 "folder, or delete it to begin anew"
@@ -224,20 +212,12 @@ class Keeper:
         self.rows = [Row(**row) for row in told["rows"]]
         return checkpoint.load(self.path, run), int(told["done"])
 
-    def save(self, run: Run, stage: Stage, done: int, row: Row) -> None:
+    def save(self, run: Run, done: int, row: Row) -> None:
         """Keep a run after a round."""
-        from dataclasses import asdict
-
         self.rows.append(row)
         if self.path is not None:
-            told = {
-                "identity": self.identity,
-                "stage": stage.name,
-                "done": done,
-                "rows": [asdict(r) for r in self.rows],
-            }
-            checkpoint.save(self.path, run, told)
-        self.tell(row, done, stage.updates)
+            told = {"identity": self.identity, "stage": self.stage, "done": done}
+            checkpoint.save(self.path, run, {**told, "rows": [asdict(r) for r in self.rows]})
 
 
 def _fit(
@@ -260,8 +240,8 @@ def _fit(
         moves, state = optimiser.update(slope, run.optimiser)
         return Run(optax.apply_updates(run.fitted, moves), state), told
 
-    run, done = keep.load(Run(begin, optimiser.init(begin)), stage)
-    name = sum(stage.name.encode())
+    run, done = keep.load(Run(begin, optimiser.init(begin)))
+    name = sum(keep.stage.encode())
     for until in _rounds(done, stage.updates):
         begun, told = time.perf_counter(), []
         for k in range(done, until):
@@ -275,9 +255,12 @@ def _fit(
             keep.tell(None, k + 1, stage.updates)
         mean = float(np.mean(np.asarray(jnp.stack(told))))
         if not np.isfinite(mean):
-            raise ComputationError(f"{stage.name}: the loss is not finite; lower its rate")
-        done = until
-        keep.save(run, stage, done, Row(stage.name, done, mean, time.perf_counter() - begun))
+            raise ComputationError(
+                f"{keep.stage}: the loss is not finite; lower its rate ({stage.rate:g})"
+            )
+        done, row = until, Row(keep.stage, until, mean, time.perf_counter() - begun)
+        keep.save(run, done, row)
+        keep.tell(row, done, stage.updates)
     return run.fitted
 
 
