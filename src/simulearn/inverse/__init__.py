@@ -1,7 +1,7 @@
 """Inverse and hybrid design: from where corners are wanted to a grid that brings them there."""
 
 from simulearn.inverse.changes import Change, changes
-from simulearn.inverse.check import Check, check
+from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals, Vertex
 from simulearn.inverse.ranking import Ranking, Suggestion, explore, rank
 from simulearn.inverse.search import METHODS, Outcome, optimize

@@ -12,6 +12,7 @@ from simulearn.errors import InputError
 from simulearn.inverse.problem import Did, Found, Problem
 
 SPREAD = 1.5  # steps, standard deviation to begin with
+FARTHEST = 1e3  # mm, that a joint may go
 LOST = 1e4  # mm, the error of what is not valid
 
 
@@ -29,7 +30,7 @@ def cma_es(problem: Problem, start: Found) -> Iterator[Did]:
         ) from error
     space, p = problem.space, len(start.x)
     scale = np.r_[np.full(p, space.move), np.full(len(start.a), space.ratio)]
-    low = np.r_[np.full(p, -np.inf), np.full(len(start.a), -1.0)] / scale
+    low = np.r_[np.full(p, -FARTHEST), np.full(len(start.a), -1.0)] / scale
     begin, size = start, max(16, 4 + int(3 * np.log(len(scale))))
     while True:
         options = {

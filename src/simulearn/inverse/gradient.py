@@ -29,7 +29,7 @@ SOFT = 1.0  # mm, below which a distance counts as its square, so that the error
 UNIT = 20.0  # mm that count as much as a whole ratio
 RELAXED, SLIDES = 40, 20  # iterations with and without actuators, at most
 MEMORY = 10  # pairs that L-BFGS keeps
-SHORTEST = 1e-3  # of a step, where a line search gives up
+SHORTEST = 1e-3  # of its first step, where a line search gives up
 GAIN = 1e-3  # less in an iteration is little
 
 
@@ -106,7 +106,9 @@ class Relaxed:
         flat = np.full_like(z, 0.0)
         if space.net(x) is None:
             return np.inf, flat
-        told = fitting_slopes(self.model, space.designs(x[None], a[None]), self.problem.goals, SOFT)
+        told = fitting_slopes(
+            self.model, space.designs(x[None], a[None]), self.problem.goals, SOFT, TOLERANCE
+        )
         if not told.converged[0] or not np.isfinite(told.cost[0]):
             return np.inf, flat
         flat[:p] = np.einsum("pjc,jc->p", space.motions, told.flat[0])
@@ -162,8 +164,9 @@ def lbfgs(value: Value, z: Array, most: Array, iterations: int) -> Iterator[tupl
         if way @ slope >= 0:
             way, kept = -slope, []
         length = 1.0 if kept else min(1.0, 10 / max(float(np.abs(way).max()), 1e-12))
+        shortest = SHORTEST * length
         while True:
-            if length < SHORTEST:
+            if length < shortest:
                 return
             new = np.clip(z + length * way, -most, most)
             then, there = value(new)

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 PROBE = 1.0  # mm, that a joint is moved to see what follows
 WIDTH = 12  # sets that the beam search keeps
 DEPTH = 4  # steps of actuators in one iteration, at most
-SETS = 10  # sets that are simulated
+SETS = 3  # sets of each number of steps that are simulated
 DAMPINGS = (0.1, 1.0, 10.0)  # times the present one
 LEAST = 1e-4
 GAIN, PATIENCE = 0.03, 1  # less is little; so many iterations of little are enough
@@ -136,10 +136,8 @@ def _moved(steps: Array, counts: NDArray[np.int64]) -> Array:
 
 def _sets(r: Array, steps: Array, left: Array, space: Space, a: Array) -> list[NDArray[np.int64]]:
     """Return the sets of steps (Q,) that leave the least, the joints' answer to each included."""
-    q = len(steps)
-    none = np.zeros(q, dtype=np.int64)
-    kept = {none.tobytes(): (float(r @ left @ r), none)}
-    front = [none]
+    none = np.zeros(len(steps), dtype=np.int64)
+    front, chosen = [none], [none]
     for _ in range(DEPTH):
         wider: dict[bytes, tuple[float, NDArray[np.int64]]] = {}
         for counts in front:
@@ -153,8 +151,6 @@ def _sets(r: Array, steps: Array, left: Array, space: Space, a: Array) -> list[N
                     more = counts.copy()
                     more[k] += sign
                     wider[more.tobytes()] = (float(values[k]), more)
-        best = sorted(wider.values(), key=lambda pair: pair[0])[:WIDTH]
-        front = [counts for _, counts in best]
-        kept |= {counts.tobytes(): (value, counts) for value, counts in best}
-    ranked = sorted(kept.values(), key=lambda pair: pair[0])
-    return [counts for _, counts in ranked[:SETS]]
+        front = [more for _, more in sorted(wider.values(), key=lambda pair: pair[0])[:WIDTH]]
+        chosen += front[:SETS]
+    return chosen

@@ -14,7 +14,7 @@ import numpy as np
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Grid
-from simulearn.inverse.check import Check, check
+from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import Step
 from simulearn.inverse.problem import Did, Found, OutOfTime, Problem, drawing
@@ -195,6 +195,8 @@ class Search:
         left = limits.seconds - self.seconds
         share = SEARCHING if phase < limits.corrections else 1.0
         problem = self._problem(space, goals, monotonic() + share * (left - self._checking))
+        done = self.steps[-1].iteration
+        most = done + max(1, round(share * (limits.iterations - done)))
         before = self.steps[-1].designs
         # Targets may have moved since it was scored.
         error = float(problem.error(start.points[None])[0])
@@ -205,7 +207,7 @@ class Search:
                     now = problem.best
                     count = self.steps[-1].iteration + did.whole
                     self._note(space, now, count, before + problem.designs, phase, did.words)
-                    if count >= limits.iterations or now.error < GOOD:
+                    if count >= most or now.error < GOOD:
                         break
                     problem.going()
         except OutOfTime:
