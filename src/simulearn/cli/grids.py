@@ -168,6 +168,9 @@ def _table(result: "Result") -> Table:
     numbers: dict[str, Any] = summary(result)
     fall = "rise" if numbers["rise_mm"] > 0 else "fall"
     work = f", {numbers['iterations']} iterations" if "iterations" in numbers else ""
+    caption = f"{result.engine}, {_seconds(result.seconds)}{work}; millimetres, +z up"
+    if "bound_mm" in numbers:
+        caption += f"\nnine of ten such answers are off by less than {numbers['bound_mm']:.2f} mm"
     table = Table(
         box=None,
         title=(
@@ -176,7 +179,7 @@ def _table(result: "Result") -> Table:
             f"largest {fall} {abs(numbers['rise_mm']):.1f} mm (joint {numbers['joint_risen']}), "
             f"z from {numbers['lowest_mm']:.1f} to {numbers['highest_mm']:.1f} mm"
         ),
-        caption=f"{result.engine}, {_seconds(result.seconds)}{work}; millimetres, +z up",
+        caption=caption,
         title_justify="left",
         caption_justify="left",
     )

@@ -56,7 +56,7 @@ def changes(space: Space, a: Array) -> list[Change]:
                 continue
             da = none[1].copy()
             da[q] = ratio - a[q]
-            words = f"{_named('actuator', group)} from {a[q]:+.2g} to {ratio:+.2g}"
+            words = f"{_named('actuator', group)}: {_signed(a[q])} → {_signed(ratio)}"
             found.append(Change(none[0], da, "actuator", group, words))
     return found
 
@@ -67,6 +67,10 @@ def _named(part: str, indices: tuple[int, ...]) -> str:
         if len(indices) == 1
         else f"{part}s {' and '.join(map(str, indices))}"
     )
+
+
+def _signed(ratio: float) -> str:
+    return f"{ratio:+.3g}" if ratio else "0"
 
 
 def _way(space: Space, joint: int, dx: Array) -> str:

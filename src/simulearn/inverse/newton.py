@@ -105,7 +105,7 @@ def probed(problem: Problem, now: Found) -> Slope:
     da = np.concatenate([np.zeros((p, q)), np.kron(np.eye(q), [[space.ratio], [-space.ratio]])])
     told = residual(problem, problem.points(now.x + dx, now.a + da)) - residual(problem, now.points)
     joints = np.nan_to_num(told[:p].T / PROBE)
-    return Slope(joints, told[p:].reshape(q, 2, -1))
+    return Slope(joints, told[p:].reshape(q, 2, told.shape[1]))
 
 
 def proposals(

@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,12 +25,13 @@ from safetensors import SafetensorError
 from safetensors.numpy import load, save
 
 from simulearn import __version__
-from simulearn.dataset import Dataset
-from simulearn.dataset.statistics import beam_lengths
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import TrainingRange
 from simulearn.learn.model import Model, builder
+
+if TYPE_CHECKING:  # reading a bundle needs none of it
+    from simulearn.dataset import Dataset
 
 SCHEMA = "simulearn.model/1"
 BUNDLES = Path(__file__).parent / "bundles"
@@ -192,7 +193,7 @@ def save_bundle(
     path: Path | str,
     model: Model,
     name: str,
-    data: Dataset,
+    data: "Dataset",
     training: Mapping[str, Any] | None = None,
     metrics: Mapping[str, Any] | None = None,
 ) -> Bundle:
@@ -209,6 +210,8 @@ def save_bundle(
     Raises:
         InputError: the folder cannot be written.
     """
+    from simulearn.dataset.statistics import beam_lengths
+
     path = Path(path)
     if path.exists() and not (path / "model.json").is_file() and any(path.iterdir()):
         raise InputError(f"{path}: holds other files; name another folder for the model")

@@ -10,15 +10,16 @@ E. Candes, Conformalized quantile regression, NeurIPS 2019.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 
-from simulearn.dataset import Batch
-from simulearn.dataset.statistics import beam_lengths
 from simulearn.learn.model import Designs
 from simulearn.learn.shapes import Shapes
+
+if TYPE_CHECKING:  # answering needs none of it
+    from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
 OUTSIDE = 2.0  # by how much the logarithm grows per width of the training range beyond it
@@ -51,7 +52,7 @@ def signs(designs: Designs, told: Shapes) -> Numbers:
     return np.stack(rows, axis=1)
 
 
-def trust_of(signs: Numbers, error: Numbers, learnt: Sequence[Batch]) -> Trust:
+def trust_of(signs: Numbers, error: Numbers, learnt: "Sequence[Batch]") -> Trust:
     """Return the estimate for a model.
 
     Args:
@@ -59,6 +60,10 @@ def trust_of(signs: Numbers, error: Numbers, learnt: Sequence[Batch]) -> Trust:
         error: (T,) of the model's answers to them, mm.
         learnt: what it has seen.
     """
+    from scipy.optimize import linprog
+
+    from simulearn.dataset.statistics import beam_lengths
+
     count, many = signs.shape
     log = np.log(np.maximum(error, 1e-6))
     # Pinball loss as a linear programme: coefficients, then what is missed above and below.

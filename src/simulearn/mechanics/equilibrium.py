@@ -14,14 +14,15 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax.scipy.linalg import cho_solve
 
 from simulearn.mechanics.poses import Array, Pose, exp_so3, hat, inverse_right, log_se3
 from simulearn.mechanics.skeleton import Skeleton
 
-UP = jnp.array([0.0, 0.0, 1.0])
+UP = np.array([0.0, 0.0, 1.0])
 # The axes of a beam's middle as its two halves see them.
-FLIP = jnp.stack([jnp.eye(3), jnp.diag(jnp.array([-1.0, -1.0, 1.0]))])
+FLIP = np.stack([np.eye(3), np.diag([-1.0, -1.0, 1.0])])
 LONGEST = 15.0  # mm, that anything may move in one step
 NEAR = 3.0  # mm, the motion below which the stiffness of forces is added
 CLOSE = 1.0  # mm, the motion below which old factors are tried
@@ -180,7 +181,7 @@ def balance(
     force, moment = hat(pulls.wrench[..., :3]), hat(pulls.wrench[..., 3:])
     zero = jnp.zeros_like(force)
     coupled = whole / 2 * _block(zero, force, force, moment) - spring  # of joints and middles
-    lift = whole / 2 * (el.length * el.line)[:, None, None] * hat(UP)
+    lift = whole / 2 * (el.length * el.line)[:, None, None] * hat(jnp.array(UP))
     none = jnp.zeros_like(lift)
     soft = inverse_of_blocks(spring[0] + spring[1] + _block(none, lift, -lift, none))
     follow = -soft @ jnp.swapaxes(coupled, -1, -2)
@@ -206,9 +207,10 @@ def _carried(bones: Skeleton, el: Elements, state: State, pulls: Pulls) -> Array
     """Return the stiffness (J, 6, 6), about the origin, of the weight that joints carry."""
     total = el.weight.at[bones.ends].add(el.length * el.line / 2)
     lever = (total[:, None] * state.joints.p).at[bones.ends].add(pulls.lever)
-    turn = (UP[:, None] * lever[:, None, :] + lever[..., None] * UP) / 2
+    leant = lever[..., None] * UP
+    turn = (leant + jnp.swapaxes(leant, -1, -2)) / 2
     turn -= lever[:, 2, None, None] * jnp.eye(3)
-    lift = total[:, None, None] / 2 * hat(UP)
+    lift = total[:, None, None] / 2 * hat(jnp.array(UP))
     return _block(jnp.zeros_like(turn), lift, -lift, turn)
 
 

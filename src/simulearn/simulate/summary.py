@@ -17,6 +17,8 @@ def summary(result: Result) -> dict[str, Any]:
         moved_mm: the largest distance a joint centre moved, joint_moved: which joint.
         seconds: time the simulation took.
         iterations: iterations of the solver in all, where the engine counts them.
+        bound_mm: nine of ten such answers are off by less, the corners' mean in the last frame,
+            where the engine estimates its error.
     """
     flat, last = result.centres[0], result.centres[-1]
     rise, moved = last[:, 2] - flat[:, 2], np.linalg.norm(last - flat, axis=1)
@@ -35,4 +37,6 @@ def summary(result: Result) -> dict[str, Any]:
     iterations = result.record.get("iterations")
     if iterations is not None:
         numbers["iterations"] = int(np.sum(iterations))
+    if "bound_mm" in result.record:
+        numbers["bound_mm"] = float(result.record["bound_mm"])
     return {k: round(v, 6) if isinstance(v, float) else v for k, v in numbers.items()}

@@ -1,0 +1,121 @@
+"""Measure how models get better with the number of trials they learn from.
+
+Each run is kept, so the command goes on where it was stopped, and reports the runs that are there.
+
+    python benchmarks/curve.py [--runs data/curve] [--sizes 50 100 ...] [--report]
+"""
+
+import argparse
+import json
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
+from report import Report
+from simulearn.dataset import Dataset, read_dataset
+from simulearn.files import replacing
+from simulearn.learn.config import Config, Fit, read_config
+from simulearn.learn.evaluate import evaluate, for_testing
+from simulearn.learn.fit import fit
+from simulearn.learn.model import Model
+from simulearn.learn.train import train
+from simulearn.show import style
+
+SIZES = (50, 100, 200, 400, 800, 1600)
+WORDS = {"paper": "paper's network", "beams": "mechanics", "equilibrium": "both"}
+UPDATES = 6000  # of the network, at sizes below the whole
+
+
+def trained(name: str, size: int, data: Dataset, folder: Path) -> Model:
+    """Return a model that has learnt from so many trials, or go on with one."""
+    config = read_config(name).model_copy(update={"trials": size, "validation": 8})
+    folder.mkdir(parents=True, exist_ok=True)
+    if isinstance(config, Fit):
+        stage = config.network and config.network.model_copy(update={"updates": UPDATES})
+        lean = {"network": stage, "stress": None, "calibration": None}
+        return fit(config.model_copy(update=lean), data, folder)[0]
+    assert isinstance(config, Config)
+    batch = max(4, 16 * size // 1600)
+    phases = [phase.model_copy(update={"batch": batch}) for phase in config.phases]
+    return train(
+        config.model_copy(update={"phases": phases}), data, folder / "checkpoint.safetensors"
+    )[0]
+
+
+def figures(model: Model, batches: list) -> dict[str, float]:
+    """Return what a model is judged by."""
+    told = evaluate(model, batches).errors.summary()
+    return {key: told[key] for key in ("mean_percent", "p97_percent", "worst_percent")}
+
+
+def picture(rows: list[dict]) -> Figure:
+    """Return the curves."""
+    with style.paper():
+        figure = Figure(figsize=(4.6, 3.0), dpi=style.DPI, layout="constrained")
+        ax = figure.subplots()
+        for name, colour in zip(WORDS, ("#8c8c8c", "#2a78b8", "#e8862e"), strict=True):
+            part = sorted((r for r in rows if r["model"] == name), key=lambda r: r["trials"])
+            if part:
+                x, y = ([r[k] for r in part] for k in ("trials", "mean_percent"))
+                ax.plot(x, y, "o-", color=colour, lw=1.2, ms=3)
+                ax.annotate(
+                    WORDS[name], (x[-1], y[-1]), (5, 0), textcoords="offset points", va="center",
+                    color=colour, fontsize=8,
+                )  # fmt: skip
+        ax.set(xscale="log", yscale="log", xlabel="trials", xlim=(40, 6000))
+        ax.set_ylabel("mean vertex error, % of dimension")
+        ax.set_xticks(SIZES, [str(n) for n in SIZES])
+        ax.minorticks_off()
+        ax.set_yticks([0.1, 0.2, 0.5, 1, 2, 5, 10], ["0.1", "0.2", "0.5", "1", "2", "5", "10"])
+        ax.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def main() -> None:
+    """Train what is not there yet, and report."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--data", type=Path, default=Path("data/default.h5"))
+    parser.add_argument("--runs", type=Path, default=Path("data/curve"))
+    parser.add_argument("--models", nargs="*", default=["beams", "equilibrium", "paper"])
+    parser.add_argument("--sizes", nargs="*", type=int, default=SIZES)
+    parser.add_argument("--report", action="store_true", help="of what is there; train nothing")
+    options = parser.parse_args()
+    if not options.report:
+        data = read_dataset(options.data, "train")
+        batches = for_testing(read_dataset(options.data, stress=False))
+        for name in options.models:
+            for size in options.sizes:
+                folder = options.runs / f"{name}-{size}"
+                if (folder / "figures.json").exists():
+                    continue
+                model = trained(name, size, data, folder)
+                told = {"model": name, "trials": size, **figures(model, batches)}
+                with replacing(folder / "figures.json") as temporary:
+                    temporary.write_text(json.dumps(told) + "\n", "utf-8")
+                print(told, flush=True)
+    rows = [json.loads(f.read_text("utf-8")) for f in options.runs.glob("*/figures.json")]
+    report = Report("curve", "Learning curves")
+    report.say(
+        "Mean vertex error of the last frame over the 400 test trials, % of dimension, by the "
+        f"number of trials learnt from; 8 of them set aside. Networks on mechanics: {UPDATES:,} "
+        "updates each. The paper's network: the epochs of its configuration, batches in "
+        "proportion to the trials, 4 at least. One seed. Below each mean, the 97th percentile."
+    )
+    sizes = sorted({r["trials"] for r in rows})
+    table = []
+    for name, words in WORDS.items():
+        found = {r["trials"]: r for r in rows if r["model"] == name}
+        for key, tail in (("mean_percent", ""), ("p97_percent", ", 97 %")):
+            table.append(
+                [words + tail, *(f"{found[n][key]:.2f}" if n in found else "" for n in sizes)]
+            )
+    report.table(["model", *map(str, sizes)], table)
+    path = Path("docs/pictures/curve.png")
+    with replacing(path) as temporary:
+        picture(rows).savefig(temporary)
+    report.say("![Learning curves](../pictures/curve.png)")
+    report.save()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,102 @@
+"""The cell unit of an aggregated table, by hybrid design (SimuLearn, UIST 2020, Figure 17).
+
+Units stand in a ring and touch at two opposite joints. The lines tangent to a unit there meet at
+its contact angle, which decides how many units close the ring: n of them where it is 360 / n
+degrees. The designer cannot set the angle; the goals bring the two joints to where an arc of that
+angle ends, the tool ranks all modifications, and one of the five suggestions is picked: here always
+the first, a designer might look at the pictures.
+
+    python examples/table.py [-o out/table] [--units 9] [--engine learned]
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from simulearn.grid import grid_to_dict, make
+from simulearn.inverse import Task, rank, task_from_dict, write_task
+from simulearn.show.assembly import Place, assembly
+from simulearn.show.inverse import cards
+from simulearn.simulate import Result, engine
+
+LENGTH = 60.0  # mm, of the beams
+LEFT, RIGHT = 3, 5  # joints where units touch
+PICKS = 12  # at most; the paper's designer made seven
+ENOUGH = 1.0  # mm
+PAIRS = {
+    "flip": "x",
+    "joints": [[0, 2], [3, 5], [6, 8], [1, 1], [7, 7]],
+    "actuators": [[0, 2], [1, 4], [5, 7], [6, 9], [10, 11]],
+}
+
+
+def task(units: int) -> Task:
+    """Return the task of a unit of a ring of so many."""
+    half = np.pi / units  # each end turns by half of the contact angle
+    arc = LENGTH - 2.0  # release shortens a beam
+    reach, drop = arc * np.sin(half) / half, arc * (1 - np.cos(half)) / half
+    return task_from_dict(
+        {
+            "schema": "simulearn.task/1",
+            "grid": grid_to_dict(make("flat", length=LENGTH)),
+            "goals": [
+                {"vertex": ["joint", LEFT, "centre"], "target": [-reach, 0.0, -drop]},
+                {"vertex": ["joint", RIGHT, "centre"], "target": [reach, 0.0, -drop]},
+            ],
+            "free": {"pairs": PAIRS},
+        }
+    )
+
+
+def contact_angle(result: Result) -> float:
+    """Return the angle (degrees) between the lines tangent to a unit where it touches others."""
+    joints = result.joints[-1]
+    bottom, top = joints[[LEFT, RIGHT], :4].mean(axis=1), joints[[LEFT, RIGHT], 4:].mean(axis=1)
+    left, right = (top - bottom) / np.linalg.norm(top - bottom, axis=1, keepdims=True)
+    return float(np.degrees(np.arccos(np.clip(left @ right, -1, 1))))
+
+
+def ring(result: Result, units: int) -> list[tuple[Result, Place]]:
+    """Return units in a ring about the z axis, each in its place."""
+    left, right = result.centres[-1, LEFT], result.centres[-1, RIGHT]
+    radius = np.linalg.norm(right - left) / 2 / np.tan(np.pi / units)
+    # The unit's x goes around, its y up, its z outwards.
+    turn = np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])
+    middle = turn @ (left + right) / 2
+    stand = Place(turn, np.array([radius, 0, 0]) - middle)
+    return [(result, Place.about_z(360 / units * k).after(stand)) for k in range(units)]
+
+
+def main(words: list[str] | None = None) -> tuple[float, Result]:
+    """Pick suggestions until the contact angle is right; return the angle and the unit."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("-o", "--output", type=Path, default=Path("out/table"))
+    parser.add_argument("--units", type=int, default=9)
+    parser.add_argument("--picks", type=int, default=PICKS)
+    parser.add_argument("--engine", default="learned")
+    asked = parser.parse_args(words)
+    asked.output.mkdir(parents=True, exist_ok=True)
+    now, answering = task(asked.units), engine(asked.engine)
+    for k in range(asked.picks):
+        told = rank(now, answering)
+        if k == 0:
+            results = answering.simulate([one.grid for one in told.best])
+            cards(told, results, now.aims).savefig(asked.output / "suggestions.png")
+        first = told.best[0]
+        if told.error_mm < ENOUGH or first.error_mm >= told.error_mm:
+            break
+        now = now.with_grid(first.grid)
+        angle = contact_angle(answering.simulate([first.grid])[0])
+        print(f"{k + 1}: {first.change.words}, {first.error_mm:.2f} mm, {angle:.1f} degrees")
+    write_task(now, asked.output / "task.json")
+    (unit,) = engine("fea").simulate([now.start])
+    angle = contact_angle(unit)
+    print(f"contact angle by finite elements {angle:.1f} of {360 / asked.units:.1f} degrees")
+    text = f"{asked.units} units, contact angle {angle:.1f} of {360 / asked.units:.1f} degrees"
+    assembly(ring(unit, asked.units), text).savefig(asked.output / "ring.png")
+    return angle, unit
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,92 @@
+"""Several morphed grids put together in space, as one picture."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from simulearn.show import style
+from simulearn.show.camera import Camera
+from simulearn.show.deformed import draw_skin, draw_triad, extent
+from simulearn.simulate import Result, Skin, skin
+
+Array = NDArray[np.float64]
+SPACING = 4.0  # mm, length of the quadrilaterals along a beam
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A rigid motion of a part to its place: p -> turn p + shift.
+
+    Attributes:
+        turn: (3, 3) rotation.
+        shift: (3,) mm.
+    """
+
+    turn: Array
+    shift: Array
+
+    def __call__(self, points: Array) -> Array:
+        """Return points (..., 3) mm in their place."""
+        return points @ self.turn.T + self.shift
+
+    def after(self, first: "Place") -> "Place":
+        """Return the motion that is this one after another."""
+        return Place(self.turn @ first.turn, self(first.shift))
+
+    @classmethod
+    def fitting(cls, points: Array, targets: Array) -> "Place":
+        """Return the motion that brings points (N, 3) closest to targets (N, 3), by Kabsch."""
+        middle, wanted = points.mean(axis=0), targets.mean(axis=0)
+        u, _, vt = np.linalg.svd((points - middle).T @ (targets - wanted))
+        turn = vt.T @ np.diag([1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+        return cls(turn, wanted - turn @ middle)
+
+    @classmethod
+    def about_z(cls, degrees: float) -> "Place":
+        """Return the turn about the z axis."""
+        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        return cls(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), np.zeros(3))
+
+
+def joined(parts: Sequence[tuple[Result, Place]]) -> Skin:
+    """Return the surfaces of the last frames of all parts in their places, as one."""
+    skins = [skin(result, SPACING) for result, _ in parts]
+    begins = np.cumsum([0, *(surface.vertices.shape[1] for surface in skins)])
+    return Skin(
+        vertices=np.concatenate(
+            [place(s.vertices[-1]) for s, (_, place) in zip(skins, parts, strict=True)]
+        )[None],
+        quads=np.concatenate([s.quads + k for s, k in zip(skins, begins, strict=False)]),
+        ratio=np.concatenate([s.ratio for s in skins]),
+        joint=np.concatenate([s.joint for s in skins]),
+        sharp=np.concatenate([s.sharp for s in skins]),
+    )
+
+
+def assembly(
+    parts: Sequence[tuple[Result, Place]],
+    text: str,
+    camera: Camera = Camera(azimuth=-62.0, elevation=18.0),
+    width: float = 5.2,
+) -> Figure:
+    """Return the picture of parts put together.
+
+    Args:
+        parts: results and where they go.
+        text: words beneath.
+        camera: where the viewer is.
+        width: of the figure, inches.
+    """
+    with style.paper():
+        surface = joined(parts)
+        low, high = extent(surface, camera, [0])
+        fig = Figure(figsize=(width, width), dpi=style.DPI)
+        ax, inch = style.footed(fig, low, high)
+        draw_skin(ax, surface.vertices[0], surface, parts[0][0].grid.fixed, camera)
+        draw_triad(ax, high[0] - 0.1 * inch, low[1] - 0.1 * inch, 0.2 * inch, camera)
+        style.words(fig, text)
+        style.legend(fig)
+    return fig

@@ -1,0 +1,142 @@
+"""Fitting the models that solve for equilibrium: losses fall, runs go on, errors are estimated."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from simulearn.errors import InputError
+from simulearn.learn import stages
+from simulearn.learn.bundle import bundle_of
+from simulearn.learn.config import Fit, config_of, read_config
+from simulearn.learn.equilibrium import Equilibrium
+from simulearn.learn.fit import fit
+from simulearn.learn.model import Designs
+from simulearn.learn.run import run
+from simulearn.learn.trust import Trust, beyond, trust_of
+
+
+@pytest.fixture(scope="module")
+def config(sample_file) -> Fit:
+    stage = {"updates": 40, "batch": 4, "rate": 0.1}
+    data = {
+        "name": "little", "kind": "equilibrium", "data": str(sample_file), "validation": 2,
+        "calibration": str(sample_file), "width": 8, "message": 2, "rounds": 1,
+        "law": stage, "network": {**stage, "rate": 2e-3}, "stress": {**stage, "rate": 1e-2},
+    }  # fmt: skip
+    return config_of(data, "little")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def short_rounds():
+    before, stages.ROUND = stages.ROUND, 10
+    yield
+    stages.ROUND = before
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("fit")
+
+
+@pytest.fixture(scope="module")
+def fitted(config, sample, folder):
+    told = []
+    bundle, rows, percent = run(config, sample, folder, lambda *x: told.append(x))
+    return bundle, rows, percent, told
+
+
+def test_every_stage_gets_better(fitted):
+    bundle, rows, percent, told = fitted
+    for stage in ("law", "network", "stress"):
+        part = [row for row in rows if row.stage == stage]
+        assert [row.update for row in part] == [10, 20, 30, 40]
+        assert part[-1].loss < part[0].loss
+    assert told[-1][1:] == (120, 120)
+    assert percent < 5  # mechanics alone, hardly fitted
+    assert bundle_of(bundle.path).model.kind == "equilibrium"
+
+
+def test_the_curve_is_kept(fitted, folder):
+    lines = (folder / "loss.csv").read_text("utf-8").splitlines()
+    assert lines[0] == "stage,update,loss,seconds"
+    assert len(lines) == 1 + 12
+
+
+def test_a_finished_run_has_nothing_left_to_do(config, sample, fitted, folder):
+    again, rows = fit(config, sample, folder)
+    assert [row.loss for row in rows] == [row.loss for row in fitted[1]]
+    for name, value in fitted[0].model.to_arrays().items():
+        np.testing.assert_array_equal(again.to_arrays()[name], value)
+
+
+def test_a_stopped_run_goes_on_bit_for_bit(config, sample, fitted, tmp_path):
+    """The stage of the law alone, which is the same in both kinds."""
+    data = config.model_dump() | {"network": None, "stress": None, "calibration": None}
+    beams = config_of(data | {"kind": "beams"}, "little")
+
+    def stop(row, done, total):
+        if row is not None and done == 20:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fit(beams, sample, tmp_path, stop)
+    model, rows = fit(beams, sample, tmp_path)
+    assert [row.loss for row in rows] == [row.loss for row in fitted[1][:4]]
+    for name, value in model.to_arrays().items():
+        np.testing.assert_array_equal(value, fitted[0].model.to_arrays()[name])
+
+
+def test_a_checkpoint_of_another_run_is_refused(config, sample, fitted, folder):
+    with pytest.raises(InputError, match="is of another run"):
+        fit(config, replace(sample, sha256="other"), folder)
+
+
+def test_a_network_belongs_to_its_kind(config):
+    data = config.model_dump()
+    with pytest.raises(InputError, match="kind beams has none"):
+        config_of({**data, "kind": "beams"}, "x")
+    with pytest.raises(InputError, match="kind equilibrium has a network"):
+        config_of({**data, "network": None}, "x")
+
+
+def test_configurations_that_come_along_fit_their_bundles():
+    for name in ("equilibrium", "beams"):
+        config, card = read_config(name), bundle_of(name).card
+        assert card.kind == config.kind
+        assert card.training["law"] == config.model_dump(mode="json")["law"]
+
+
+def test_an_estimate_that_nine_of_ten_stay_below(sample):
+    rng = np.random.default_rng(0)
+    sign = np.stack([np.ones(2000), rng.normal(size=2000)], axis=1)
+    error = np.exp(0.5 * sign[:, 1] + 0.3 * rng.normal(size=2000))
+    trust = trust_of(sign[:1000], error[:1000], sample.batches)
+    below = error[1000:] <= np.exp(sign[1000:] @ trust.weights)
+    assert below.mean() == pytest.approx(0.9, abs=0.03)
+    assert trust.weights[1] == pytest.approx(0.5, abs=0.05)
+
+
+def test_outside_the_ranges_less_is_trusted(fitted):
+    trust = fitted[0].model.trust
+    (low, high), _ = trust.ranges
+    beams = np.array([[0, 1], [0, 2]])
+
+    def of(size):
+        flat = np.array([[[0, 0], [size, 0], [0, 50.0]]])
+        return Designs(beams, 0, flat, np.zeros((1, 2)))
+
+    assert beyond(of((low + high) / 2), trust.ranges)[0] == 0
+    assert beyond(of(high + (high - low)), trust.ranges)[0] >= 1
+    assert isinstance(trust, Trust)
+
+
+def test_the_default_model_tells_its_error(sample):
+    model = bundle_of("default").model
+    assert isinstance(model, Equilibrium)
+    batch = sample.batches[0]
+    designs = Designs(batch.beams, batch.fixed, batch.flat[:8].astype(float), batch.actuators[:8])
+    frames = model.rollout(designs)
+    assert frames.converged.all()
+    assert (frames.bound_mm > 0.01).all()
+    assert (frames.bound_mm < 5).all()
