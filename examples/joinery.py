@@ -1,7 +1,7 @@
 """A diagonal support for a mitred wood joint, by forward design (SimuLearn, UIST 2020, Figure 19).
 
 Two panels meet at a right angle. A centrepiece lies across the corner and curls until its two ends
-stand in slits of the panels. The designer draws, simulates and looks: which of four actuations
+stand in slits of the panels. The designer draws, simulates and looks: which of five actuations
 turns the ends square to the panels, where the slits must be, and whether the piece clears the wood.
 
     python examples/joinery.py [-o out/joinery] [--engine learned]
@@ -18,18 +18,20 @@ from simulearn.show import combined
 from simulearn.simulate import Result, engine
 
 LENGTH = 62.0  # mm, of the beams
-VARIANTS = (0.25, 0.5, 0.75, 1.0)  # of the beams that run across the corner
+# Ratios of the beams that run across the corner: in the rim, in the middle.
+VARIANTS = ((0.25, 0.25), (0.5, 0.5), (0.25, 0.75), (0.5, 0.75), (0.75, 0.75))
 STIFFENING = 0.5  # of the rim beams along the corner, which keep the ends straight
 ENDS = ((0, 3, 6), (2, 5, 8))  # joints that go into either panel
 
 
-def design(ratio: float) -> Grid:
-    """Return a centrepiece: beams across the corner curl up, those along its middle a little down."""
+def design(rim: float, inner: float) -> Grid:
+    """Return a centrepiece: beams across the corner curl up, those amid it a little down."""
     plain = make("flat", length=LENGTH)
     start, end = plain.joints[plain.beams.T]
     across = np.abs(end - start)[:, 0] > 1
     middle = ~across & (np.abs(start[:, 0]) < 1)
-    ratios = np.where(across, ratio, np.where(middle, -STIFFENING, 0.0))
+    curl = np.where(np.abs(start[:, 1]) > 1, rim, inner)
+    ratios = np.where(across, curl, np.where(middle, -STIFFENING, 0.0))
     return Grid(plain.joints, plain.beams, ratios, plain.fixed)
 
 
@@ -76,15 +78,15 @@ def main(words: list[str] | None = None) -> Fit:
     parser.add_argument("--engine", default="learned")
     asked = parser.parse_args(words)
     asked.output.mkdir(parents=True, exist_ok=True)
-    grids = [design(ratio) for ratio in VARIANTS]
+    grids = [design(*ratios) for ratios in VARIANTS]
     fits = [fit(result) for result in engine(asked.engine).simulate(grids)]
-    for ratio, told in zip(VARIANTS, fits, strict=True):
-        print(f"ratio {ratio:g}: ends turned by {told.turned:.1f} degrees")
+    for (rim, inner), told in zip(VARIANTS, fits, strict=True):
+        print(f"rim {rim:g}, middle {inner:g}: ends turned by {told.turned:.1f} degrees")
     best = min(range(len(fits)), key=lambda k: abs(fits[k].turned - 90))
     (result,) = engine("fea").simulate([grids[best]])
     told = fit(result)
     print(
-        f"ratio {VARIANTS[best]:g} by finite elements: {told.turned:.1f} degrees; slits "
+        f"rim and middle {VARIANTS[best]} by finite elements: {told.turned:.1f} degrees; slits "
         f"{told.slits[0]:.1f} and {told.slits[1]:.1f} mm from the corner, "
         f"clearance {told.clearance:.1f} mm"
     )

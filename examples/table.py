@@ -6,7 +6,7 @@ degrees. The designer cannot set the angle; the goals bring the two joints to wh
 angle ends, the tool ranks all modifications, and one of the five suggestions is picked: here always
 the first, a designer might look at the pictures.
 
-    python examples/table.py [-o out/table] [--units 9] [--engine learned]
+    python examples/table.py [-o out/table] [--units 6] [--engine learned]
 """
 
 import argparse
@@ -23,7 +23,7 @@ from simulearn.simulate import Result, engine
 LENGTH = 60.0  # mm, of the beams
 LEFT, RIGHT = 3, 5  # joints where units touch
 PICKS = 12  # at most; the paper's designer made seven
-ENOUGH = 1.0  # mm
+ENOUGH = 0.5  # mm
 PAIRS = {
     "flip": "x",
     "joints": [[0, 2], [3, 5], [6, 8], [1, 1], [7, 7]],
@@ -72,7 +72,7 @@ def main(words: list[str] | None = None) -> tuple[float, Result]:
     """Pick suggestions until the contact angle is right; return the angle and the unit."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-o", "--output", type=Path, default=Path("out/table"))
-    parser.add_argument("--units", type=int, default=9)
+    parser.add_argument("--units", type=int, default=6)
     parser.add_argument("--picks", type=int, default=PICKS)
     parser.add_argument("--engine", default="learned")
     asked = parser.parse_args(words)

@@ -2,7 +2,6 @@
 
 from itertools import islice
 
-import jax
 import numpy as np
 import pytest
 
@@ -16,15 +15,6 @@ from simulearn.inverse.task import Free
 from simulearn.simulate import engine
 
 TIGHT = 1e-9  # mm
-
-
-@pytest.fixture(scope="module", autouse=True)
-def quick_to_compile():
-    """Compiling for speed takes longer than what is compiled here runs."""
-    before = jax.config.read("jax_disable_most_optimizations")
-    jax.config.update("jax_disable_most_optimizations", True)
-    yield
-    jax.config.update("jax_disable_most_optimizations", before)
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
-from simulearn.learn.model import Designs
+from simulearn.learn.model import Designs, last_frame
 from simulearn.simulate import Simulator
 from simulearn.simulate.learned import Learned
 
@@ -43,9 +43,9 @@ def _together(engine: Learned, goals: Goals) -> Places:
                 f'material is {designs.material}; the model "{card.name}" has learnt '
                 f"{card.material}"
             )
-        frames = model.rollout(designs)
-        points = goals.points(frames.joints[:, -1], frames.sections[:, -1])
-        answered = frames.converged & np.isfinite(points).all(axis=(1, 2))
+        told = last_frame(model, designs)
+        points = goals.points(told.joints, told.sections)
+        answered = told.converged & np.isfinite(points).all(axis=(1, 2))
         return np.where(answered[:, None, None], points, np.nan)
 
     return together

@@ -202,7 +202,7 @@ class Search:
         error = float(problem.error(start.points[None])[0])
         start = problem.best = Found(start.x, start.a, start.points, error)
         try:
-            if start.error > GOOD:
+            if start.error > GOOD and done < limits.iterations:
                 for did in self.method(problem, start):
                     now = problem.best
                     count = self.steps[-1].iteration + did.whole
