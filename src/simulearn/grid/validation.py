@@ -7,8 +7,8 @@ errors can be meshed.
 Rules and limits: Yang et al., SimuLearn, UIST 2020, Figure 15, and the authors' published tool.
 """
 
-from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
 from math import hypot
 from typing import Any
 
@@ -47,10 +47,17 @@ class TrainingRange:
 
 @dataclass(frozen=True)
 class Validation:
-    """What validation has to say: errors forbid, warnings do not."""
+    """What validation has to say.
+
+    Attributes:
+        errors: that forbid.
+        warnings: that do not.
+        net_lengths: mm, of the beams that stay and have an outline, by their numbers.
+    """
 
     errors: tuple[Message, ...]
     warnings: tuple[Message, ...]
+    net_lengths: Mapping[int, float] = field(default_factory=dict)
 
     @property
     def valid(self) -> bool:
@@ -110,7 +117,8 @@ def validate(
         errors += _collisions(shapes, roomy)
         if training is not None:
             warnings += _size(grid, joints, training)
-    return Validation(tuple(errors), tuple(warnings))
+    net = {b: measures[1] for b, measures in lengths.items()}
+    return Validation(tuple(errors), tuple(warnings), net)
 
 
 def _layout(grid: Grid, joints: NDArray[np.bool_], beams: NDArray[np.bool_]) -> Iterator[Message]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
-from simulearn.grid import Grid, TrainingRange, outline, validate
+from simulearn.grid import Grid, TrainingRange, validate
 from simulearn.inverse.task import Free
 from simulearn.learn.model import Designs
 from simulearn.material import Material, load_material
@@ -169,10 +169,7 @@ class Space:
             report = validate(bare, self._material, training=self.training)
             if report.errors or (self.training is not None and report.warnings):
                 return None
-            ends = outline(bare, self._material.section).beams.mean(axis=2)
-            # The middle of a joint's side lies on the axis.
-            length: Array = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-            return length
+            return np.array([report.net_lengths[b] for b in range(len(bare.beams))])
 
         return layout
 
