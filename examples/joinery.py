@@ -17,7 +17,7 @@ from simulearn.grid import Grid, make, write_grid
 from simulearn.show import combined
 from simulearn.simulate import Result, engine
 
-LENGTH = 62.0  # mm, of the beams
+LENGTH = 55.0  # mm, of the beams
 # Ratios of the beams that run across the corner: in the rim, in the middle.
 VARIANTS = ((0.25, 0.25), (0.5, 0.5), (0.25, 0.75), (0.5, 0.75), (0.75, 0.75))
 STIFFENING = 0.5  # of the rim beams along the corner, which keep the ends straight

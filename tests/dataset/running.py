@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 
-def command(*words: object, **more: object) -> "subprocess.Popen[str]":
+def command(*words: object) -> "subprocess.Popen[str]":
     """Start the command line in a process group of its own."""
     return subprocess.Popen(
         [sys.executable, "-m", "simulearn.cli", *map(str, words)],
@@ -14,5 +14,4 @@ def command(*words: object, **more: object) -> "subprocess.Popen[str]":
         text=True,
         start_new_session=True,
         env={**os.environ, "COLUMNS": "200"},
-        **more,  # type: ignore[call-overload]
     )

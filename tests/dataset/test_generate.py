@@ -3,7 +3,6 @@
 import json
 import os
 import random
-import resource
 import signal
 import sys
 import time
@@ -100,12 +99,10 @@ def test_a_full_disk_stops_the_run_and_loses_nothing(folder, small_file, tmp_pat
     sizes = sorted(file.stat().st_size for file in (folder / "trials").glob("*.npz"))
     between = (sizes[len(sizes) // 2] + sizes[-1]) // 2  # some trials fit, some do not
 
-    def no_room() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (between, between))
-
     words = ("dataset", "generate", small_file, "-o", tmp_path / "set")
     # A cache of compiled kernels has no room either, and is done without.
-    process = command(*words, preexec_fn=no_room)
+    process = command(*words)
+    psutil.Process(process.pid).rlimit(psutil.RLIMIT_FSIZE, (between, between))
     _, err = process.communicate(timeout=120)
     assert process.returncode == 3, err
     assert "cannot be written (File too large)" in err

@@ -128,7 +128,7 @@ def test_a_cantilever_with_end_shear_follows_the_table():
 
 def test_it_converges_with_the_square_of_the_pieces():
     tips = [
-        np.asarray(loaded(*chain(n, 10.0, STIFF), 5, 4.0)[-1].joints.p[-1]) for n in (1, 2, 4, 32)
+        np.asarray(loaded(*chain(n, 10.0, STIFF), 5, 4.0)[-1].joints.p[-1]) for n in (1, 2, 4, 16)
     ]
     errors = [np.linalg.norm(tip - tips[-1]) for tip in tips[:-1]]
     assert errors[0] / errors[1] > 3

@@ -163,14 +163,13 @@ class Search:
         problem = self._problem(space, goals, np.inf)
         before = self.steps[-1] if self.steps else None
         x, a = space.start if before is None else space.point(before.grid(space.grid))
-        if isinstance(self.engine, Learned):
-            for count in (1, 16):  # kernels for one and for many are compiled before the clock runs
-                problem.points(np.repeat(x[None], count, axis=0), np.repeat(a[None], count, axis=0))
         found = problem.found(x, a)
         if not np.isfinite(found.error):
             raise ComputationError(
                 f"the engine {self.engine.name} has no answer for the design to begin with"
             )
+        if isinstance(self.engine, Learned):  # its kernels are compiled before the clock runs
+            next(self.method(self._problem(space, goals, np.inf), found), None)
         self._begun = monotonic() - (before.seconds if before else 0.0)
         if before is None:
             self._note(space, found, 0, 1, 0, "the design to begin with")

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
-from simulearn.learn import local
-from simulearn.learn.model import Designs, Frames
+from simulearn.learn import local, stresses
+from simulearn.learn.model import Designs, Frames, Last
 from simulearn.learn.shapes import Parameters, Shapes, shapes
 from simulearn.learn.trust import Trust
 from simulearn.material import Material, load_material
@@ -55,18 +55,27 @@ class Equilibrium:
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology; see `learn.model.Model`."""
         told = self.told(designs)
-        corners = (told.joints, told.sections)
-        good = (told.way < CONVERGED) & np.all(
-            [np.isfinite(x).reshape(len(designs), -1).all(axis=1) for x in corners], axis=0
-        )
         bound = None if self.trust is None else self.trust.bound(designs, told)
-        return Frames(*corners, told.stress, bound, np.asarray(good))  # type: ignore[arg-type]
+        return Frames(
+            np.asarray(told.joints),
+            np.asarray(told.sections),
+            None if told.stress is None else np.asarray(told.stress),
+            bound,
+            _good(told),
+        )
 
-    def told(self, designs: Designs) -> Shapes:
-        """Return twelve frames of each design, and what the error estimate goes by."""
+    def last(self, designs: Designs) -> Last:
+        """Return the last frame; see `learn.model.last_frame`."""
+        told = self.told(designs, last=True)
+        joints, sections = np.asarray(told.joints)[:, 0], np.asarray(told.sections)[:, 0]
+        return Last(joints, sections, _good(told))
+
+    def told(self, designs: Designs, last: bool = False) -> Shapes:
+        """Return twelve frames of each design, or the last, and what the error estimate goes by."""
         count = len(designs)
         bones = skeletons(designs.beams, designs.fixed, designs.flat)
-        kernel = partial(_kernel(self.material, self.kind), self._parameters)
+        parameters = self._parameters._replace(stress=None) if last else self._parameters
+        kernel = partial(_kernel(self.material, self.kind, last), parameters)
         size = AT_ONCE if count >= AT_ONCE else 1
         parts = [np.arange(a, a + size) % count for a in range(0, count, size)]
 
@@ -138,6 +147,15 @@ class Equilibrium:
         )
 
 
+def _good(told: Shapes) -> NDArray[np.bool_]:
+    """Return which designs (T,) have an answer."""
+    way = np.asarray(told.way)
+    finite = [
+        np.isfinite(x).reshape(len(way), -1).all(axis=1) for x in (told.joints, told.sections)
+    ]
+    return np.asarray((way < CONVERGED) & np.all(finite, axis=0))
+
+
 def _named(parameters: Parameters) -> list[tuple[str, Any]]:
     """Return the arrays of parameters with their names, in the order of the tree."""
     pairs = jax.tree_util.tree_flatten_with_path(parameters)[0]
@@ -145,26 +163,32 @@ def _named(parameters: Parameters) -> list[tuple[str, Any]]:
 
 
 @lru_cache
-def _kernel(material: str, kind: str) -> Any:
-    """Return the compiled function: parameters, skeletons, joints, ratios -> all frames."""
+def _kernel(material: str, kind: str, last: bool) -> Any:
+    """Return the compiled function: parameters, skeletons, joints, ratios -> frames."""
     del kind  # two kinds have parameters of other structures, and kernels of their own
     data = load_material(material)
     load = loads(data)
 
     @jax.jit
     def kernel(parameters: Parameters, bones: Skeleton, joints: Any, ratio: Any) -> Shapes:
-        one = partial(_whole, parameters, load, data)
+        one = partial(_last if last else _whole, parameters, load, data)
         return jax.vmap(one)(bones, joints, ratio)
 
     return kernel
+
+
+def _last(
+    parameters: Parameters, load: Any, data: Material, bones: Skeleton, joints: Any, ratio: Any
+) -> Shapes:
+    """Return the last frame of a design."""
+    plan = flat(bones, joints, data.section)
+    return shapes(parameters, bones, plan, ratio, load, data, last=True)
 
 
 def _whole(
     parameters: Parameters, load: Any, data: Material, bones: Skeleton, joints: Any, ratio: Any
 ) -> Shapes:
     """Return all twelve frames of a design."""
-    from simulearn.learn import stresses
-
     plan = flat(bones, joints, data.section)
     later = shapes(parameters, bones, plan, ratio, load, data)
     at, sections = first_frame(parameters, bones, plan)

@@ -8,7 +8,7 @@ A kind of model is a module of this folder with a class that has `kind`, `rollou
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,31 @@ class Model(Protocol):
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """Return all weights and normalisers by name."""
         ...
+
+
+class Last(NamedTuple):
+    """The last frame alone: corners of joints (T, J, 8, 3) and sections (T, B, 3, 4, 3), mm.
+
+    Attributes:
+        converged: (T,) whether the answer is one.
+    """
+
+    joints: NDArray[np.float64]
+    sections: NDArray[np.float64]
+    converged: NDArray[np.bool_]
+
+
+def last_frame(model: Model, designs: Designs) -> Last:
+    """Return the last frame of designs of one topology, which some models tell sooner than all."""
+    if isinstance(model, _Quick):
+        return model.last(designs)
+    frames = model.rollout(designs)
+    return Last(frames.joints[:, -1], frames.sections[:, -1], frames.converged)
+
+
+@runtime_checkable
+class _Quick(Protocol):
+    def last(self, designs: Designs) -> Last: ...
 
 
 Builder = Callable[[Mapping[str, Any], Mapping[str, NDArray[Any]]], Model]

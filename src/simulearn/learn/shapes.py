@@ -32,7 +32,7 @@ class Parameters(NamedTuple):
 
 
 class Shapes(NamedTuple):
-    """Frames 1 to 11, stacked.
+    """Frames 1 to 11, or the last alone, stacked.
 
     Attributes:
         joints: (11, J, 8, 3) corners, mm.
@@ -40,7 +40,7 @@ class Shapes(NamedTuple):
         stress: (11, B, 4, 4, 6) MPa, or None if there is no network for it.
         way: () the last motion of an iteration, mm; large if there is no equilibrium.
         apart: () mean distance between the joints of the first shape and the last, last frame, mm.
-        sag: () mean way of the joints from the tenth frame to the last, in which they creep, mm.
+        sag: () mean way of the joints in creep, first shape, mm.
         strain: () root of the mean square turn of the halves from rest, last frame, rad.
     """
 
@@ -113,6 +113,7 @@ def shapes(
     load: Loads,
     material: Material,
     tolerance: float = TOLERANCE,
+    last: bool = False,
 ) -> Shapes:
     """Return frames 1 to 11 of a design.
 
@@ -124,11 +125,16 @@ def shapes(
         load: weights.
         material: for the printed-in stress.
         tolerance: of the last motion of an iteration, mm.
+        last: whether only the last frame is asked for, which costs half.
     """
     law, network, stress = parameters
-    released = jnp.array(RELEASED)
+    released, gravity = jnp.array(RELEASED), load.gravity
     bare = every_frame(law, bones, plan, ratio, load)
     begun, strains, ways = first(bones, plan, bare, tolerance)
+    sag = jnp.linalg.norm(begun.joints.p[-1] - begun.joints.p[-2], axis=-1).mean()
+    if last:
+        kept = (released, gravity, bare, begun, strains)
+        released, gravity, bare, begun, strains = jax.tree.map(lambda x: x[-1:], kept)
     told = jax.tree.map(lambda x: jnp.broadcast_to(x, (len(released), *x.shape)), plain(len(ratio)))
     ended, again = begun, ways
     if network is not None:
@@ -137,44 +143,31 @@ def shapes(
             seen = local.look(bones, plan, ratio, state, twist, s, gravity)
             return local.answer(network, bones, seen)
 
-        told = jax.vmap(tell)(begun, strains, released, load.gravity)
+        told = jax.vmap(tell)(begun, strains, released, gravity)
         ended, again = resettled(bones, corrected(bare, told), begun, tolerance)
 
     def corners(state: State, s: Array, face: Array, middle: Array) -> tuple[Array, Array]:
         return placed(bones, plan, state, *local_corners(law, bones, plan, s, face, middle))
 
     joints, sections = jax.vmap(corners)(ended, released, told.face, told.middle)
+    strained = None
+    if stress is not None:
+        printed = stresses.printed(material, plan, ratio)
+
+        def strain(el: Elements, state: State, s: Array, gravity: Array) -> Array:
+            own = (1 - s) * printed + elastic(stress, bones, plan, ratio, el, state, s, gravity)
+            return stresses.in_space(bones, plan, state, own)
+
+        strained = jax.vmap(strain)(bare, ended, released, gravity)
     return Shapes(
         joints,
         sections,
-        None
-        if stress is None
-        else strained(stress, bones, plan, ratio, load, material, bare, ended),
+        strained,
         jnp.maximum(ways.max(), again.max()),
         jnp.linalg.norm(ended.joints.p[-1] - begun.joints.p[-1], axis=-1).mean(),
-        jnp.linalg.norm(ended.joints.p[-1] - ended.joints.p[-2], axis=-1).mean(),
+        sag,
         jnp.sqrt((strains[-1, ..., 3:] ** 2).sum(-1).mean()),
     )
-
-
-def strained(
-    network: local.Weights,
-    bones: Skeleton,
-    plan: Flat,
-    ratio: Array,
-    load: Loads,
-    material: Material,
-    bare: Elements,
-    states: State,
-) -> Array:
-    """Return the stresses (11, B, 4, 4, 6) of frames 1 to 11 in their states, MPa."""
-    first = stresses.printed(material, plan, ratio)
-
-    def one(el: Elements, state: State, s: Array, gravity: Array) -> Array:
-        own = (1 - s) * first + elastic(network, bones, plan, ratio, el, state, s, gravity)
-        return stresses.in_space(bones, plan, state, own)
-
-    return jax.vmap(one)(bare, states, jnp.array(RELEASED), load.gravity)
 
 
 def elastic(

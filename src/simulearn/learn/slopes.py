@@ -80,7 +80,7 @@ def _kernel(material: str, cost: Cost, tolerance: float) -> Any:
         design: tuple[Array, Array], parameters: Parameters, bones: Skeleton, given: Any
     ) -> tuple[Array, Array]:
         plan = flat(bones, design[0], data.section)
-        told = shapes(parameters, bones, plan, design[1], load, data, tolerance)
+        told = shapes(parameters, bones, plan, design[1], load, data, tolerance, last=True)
         return cost(told.joints[-1], told.sections[-1], given), told.way
 
     @jax.jit
