@@ -52,20 +52,22 @@ def seen_from_centre(points: np.ndarray) -> np.ndarray:
     return (points - points[4]) @ np.stack([x, np.cross(z, x), z]).T
 
 
-def task(module: int, seconds: float = 30.0, engine: str = "learned") -> Task:
+def task(
+    module: int, seconds: float = 30.0, iterations: int = 1000, engine: str = "learned"
+) -> Task:
     """Return the task of a module."""
     targets = seen_from_centre(wanted(module)).tolist()
     return task_from_dict(
         {
             "schema": "simulearn.task/1",
-            "grid": grid_to_dict(make("dome", length=55.0)),
+            "grid": grid_to_dict(make("flat", length=55.0)),
             "goals": [
                 {"vertex": ["joint", k, "centre"], "target": place}
                 for k, place in enumerate(targets)
             ],
             "free": {"pairs": PAIRS},
             "engine": engine,
-            "limits": {"seconds": seconds},
+            "limits": {"seconds": seconds, "iterations": iterations},
         }
     )
 
@@ -75,13 +77,15 @@ def main(words: list[str] | None = None) -> list[Outcome]:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-o", "--output", type=Path, default=Path("out/lampshade"))
     parser.add_argument("--seconds", type=float, default=30.0)
+    parser.add_argument("--iterations", type=int, default=1000)
     parser.add_argument("--engine", default="learned")
     asked = parser.parse_args(words)
     asked.output.mkdir(parents=True, exist_ok=True)
     found, parts = [], []
     for k, name in enumerate(MODULES):
-        write_task(task(k, asked.seconds, asked.engine), asked.output / f"{name}-task.json")
-        outcome = optimize(task(k, asked.seconds, asked.engine))
+        wanting = task(k, asked.seconds, asked.iterations, asked.engine)
+        write_task(wanting, asked.output / f"{name}-task.json")
+        outcome = optimize(wanting)
         assert outcome.check is not None
         result = outcome.check.fea or outcome.check.result
         place = Place.fitting(result.centres[-1], wanted(k))

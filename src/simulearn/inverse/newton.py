@@ -63,6 +63,8 @@ def newton(problem: Problem, start: Found) -> Iterator[Did]:
         again = problem.source.random(len(a)) < SHARE
         a = np.where(again, 2 * problem.source.random(len(a)) - 1, best.a)
         x = best.x
+        if k == 0 and start.a.any():  # ratios at their limits are a bad place to relax from
+            x, a = start.x, 0 * a
         if problem.model is None:
             begin = _nearby(problem, x, problem.space.nearest(x, a))
 

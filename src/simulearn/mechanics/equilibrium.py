@@ -37,6 +37,9 @@ class State(NamedTuple):
     middles: Pose
 
 
+Motion = tuple[Array, Array]  # of joints (J, 6) and middles (B, 6): translation, rotation in space
+
+
 class Elements(NamedTuple):
     """Halves of beams and loads at one released fraction.
 
@@ -360,32 +363,43 @@ def iterate(
 ) -> tuple[State, Array]:
     """Iterate until nothing moves by more than a tolerance (mm); return the last motion, too."""
 
-    def stepped(state: State, forces: Forces, by: Factors) -> tuple[State, Array]:
+    def forces_in(state: State) -> Forces:
+        return _gathered(bones, el, _pulls(el, halves(bones, state)).forces)
+
+    def asked(forces: Forces, by: Factors) -> tuple[Motion, Array]:
         joints, middles = solve(bones, forces, by)
         way = jnp.maximum(jnp.abs(joints[:, :3]).max(), jnp.abs(middles[:, :3]).max())
         stable = jnp.isfinite(way)  # else the stiffness has no factor: stay
         less = jnp.minimum(1.0, LONGEST / jnp.maximum(way, 1e-9))
-        step = [jnp.where(stable, less * x, 0.0) for x in (joints, middles)]
-        return moved(state, *step), jnp.where(stable, way, jnp.inf)
+        step = jnp.where(stable, less * joints, 0.0), jnp.where(stable, less * middles, 0.0)
+        return step, jnp.where(stable, way, jnp.inf)
 
     def once(carry: tuple[State, Array, Array]) -> tuple[State, Array, Array]:
         state, before, count = carry
-        whole = jnp.where(before < NEAR, 1.0, 0.0)
-        forces, by = balance(bones, el, state, whole)
+        forces, by = balance(bones, el, state, jnp.where(before < NEAR, 1.0, 0.0))
+        step, way = asked(forces, by)
+
+        def shorter(carry: tuple[Array, Array]) -> tuple[Array, Array]:
+            # Where a step leads beyond the lowest point along it, back to where that may lie.
+            slope, beyond = _power(forces, step), _power(forces_in(moved(state, *step)), step)
+            share = jnp.where(beyond > -slope / 4, slope / (slope - beyond), 1.0)
+            return share, jnp.array(0.0)
+
+        begin = (jnp.array(1.0), jnp.where(jnp.isfinite(way), way, 0.0))
+        share, _ = jax.lax.while_loop(lambda carry: carry[1] > CLOSE, shorter, begin)
+        state = moved(state, share * step[0], share * step[1])
 
         def again(carry: tuple[State, Array, Array, Array]) -> tuple[State, Array, Array, Array]:
             state, before, _, k = carry
-            pulls = _pulls(el, halves(bones, state))
-            state, way = stepped(state, _gathered(bones, el, pulls.forces), by)
-            return state, way, way > SLOW * before, k + 1
+            step, way = asked(forces_in(state), by)
+            return moved(state, *step), way, way > SLOW * before, k + 1
 
         def going(carry: tuple[State, Array, Array, Array]) -> Array:
             _, way, slow, k = carry
             return (way > tolerance) & ~slow & (k < AGAIN)
 
-        state, way = stepped(state, forces, by)
-        begin = (state, way, way > CLOSE, jnp.array(0))
-        state, way, _, _ = jax.lax.while_loop(going, again, begin)
+        begun = (state, way, way > CLOSE, jnp.array(0))
+        state, way, _, _ = jax.lax.while_loop(going, again, begun)
         return state, way, count + 1
 
     def going(carry: tuple[State, Array, Array]) -> Array:
@@ -394,3 +408,8 @@ def iterate(
     begin = (state, jnp.array(jnp.inf), jnp.array(0))
     state, way, _ = jax.lax.while_loop(going, once, begin)
     return state, way
+
+
+def _power(forces: Forces, step: Motion) -> Array:
+    """Return how the energy changes along a step, to first order."""
+    return (forces.joints * step[0]).sum() + (forces.middles * step[1]).sum()
