@@ -1,8 +1,11 @@
 """How far a grid of beams is off the true shape, to first order, without solving for its own.
 
-At the true poses the beams are not quite in balance. One Gauss-Newton step tells where they would
-go; that way, with the warping that is missed, is the error of a corner. It can be computed for any
+At the true poses the beams are not quite in balance. One Newton step tells where they would go;
+that way, with the warping that is missed, is the error of a corner. It can be computed for any
 parameters, however bad, and costs no iteration, so it is what models are fitted by.
+
+Gauss-Newton's stiffness always has an answer; the whole stiffness tells the way of slender
+grids rightly, once the parameters are good enough to be nearly in balance.
 """
 
 import jax
@@ -20,7 +23,13 @@ SMALL = 3e-4  # squared % of dimension, below which errors count by their square
 
 
 def misses(
-    parameters: Parameters, load: Loads, trial: Truth, frame: Array, begun: State, twist: Array
+    parameters: Parameters,
+    load: Loads,
+    trial: Truth,
+    frame: Array,
+    begun: State,
+    twist: Array,
+    whole: bool = False,
 ) -> tuple[Array, Array]:
     """Return the errors of the corners of joints (J, 8, 3) and middle sections (B, 4, 3), mm.
 
@@ -31,6 +40,7 @@ def misses(
         frame: 0 to 10, for frames 1 to 11.
         begun: what the law alone gives in that frame; looked at by the network.
         twist: (2, B, 6) of the halves there.
+        whole: whether the stiffness of forces that turn counts, where the grid is stable with it.
     """
     bones, plan, ratio = trial.bones, trial.plan, trial.ratio
     s, gravity = jnp.array(RELEASED)[frame], load.gravity[frame]
@@ -40,7 +50,11 @@ def misses(
         told = local.answer(parameters.network, bones, seen)
         el = corrected(el, told)
     at = jax.tree.map(lambda x: x[frame], trial.state)
-    joints, middles = solve(bones, *balance(bones, el, at))
+    share: Array | float = 0.0
+    if whole:
+        root = balance(bones, jax.lax.stop_gradient(el), at, 1.0)[1].root
+        share = jnp.where(jnp.isfinite(root).all(), 1.0, 0.0)
+    joints, middles = solve(bones, *balance(bones, el, at, share))
     own = local_corners(parameters.law, bones, plan, s, told.face, told.middle)
 
     def off(turn: Array, step: Array, true: Array, told: Array) -> Array:

@@ -145,6 +145,7 @@ class Fit(_Data):
         width, message, rounds: of the network; see `local.weights`.
         law: fits the section.
         network: fits the network that corrects it.
+        polish: goes on with it by the whole stiffness; see `balance`.
         stress: fits the network that tells stresses.
     """
 
@@ -160,12 +161,15 @@ class Fit(_Data):
     rounds: Count = 2
     law: Stage
     network: Stage | None = None
+    polish: Stage | None = None
     stress: Stage | None = None
 
     @model_validator(mode="after")
     def _network_by_kind(self) -> "Fit":
         if (self.kind == "equilibrium") != (self.network is not None):
             raise ValueError("kind equilibrium has a network, kind beams has none")
+        if self.polish is not None and self.network is None:
+            raise ValueError("polish goes on with a network, and there is none")
         return self
 
 

@@ -2,13 +2,14 @@
 
 1. The law of the section, without a network.
 2. The first shapes of all trials by that law, which the network looks at.
-3. The network that corrects it, then the one for stresses.
+3. The network that corrects it, its polish, and the network for stresses.
 4. The error estimate, on a data set of its own.
 
-FOLDER/law.safetensors, network.safetensors, stress.safetensors   checkpoints
+FOLDER/law.safetensors, network.safetensors, polish..., stress...   checkpoints
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ import numpy as np
 from simulearn.dataset import Batch, Dataset, read_dataset
 from simulearn.errors import InputError
 from simulearn.learn import local
-from simulearn.learn.config import Fit
+from simulearn.learn.config import Fit, Stage
 from simulearn.learn.equilibrium import Equilibrium
 from simulearn.learn.flat import designs_of
 from simulearn.learn.metrics import errors
@@ -56,41 +57,44 @@ def fit(
         calibration = read_dataset(config.calibration, stress=False).batches
     material = load_material(batch.material)
     identity = fingerprint(config, data)
-    plan = {"law": config.law, "network": config.network, "stress": config.stress}
-    total = sum(stage.updates for stage in plan.values() if stage is not None)
-    rows: list[Row] = []
+    plan = (config.law, config.network, config.polish, config.stress)
+    total = sum(stage.updates for stage in plan if stage is not None)
+    every: list[Row] = []
     before = 0
 
     def keeper(name: str) -> Keeper:
         def told(row: Row | None, done: int, _: int) -> None:
-            if row is not None:
-                rows.append(row)
             tell(row, before + done, total)
 
         path = None if folder is None else folder / f"{name}.safetensors"
         return Keeper(name, path, identity, told)
 
+    def finished(stage: Stage, keep: Keeper) -> int:
+        every.extend(keep.rows)
+        return before + stage.updates
+
     keep = keeper("law")
     law = fit_law(batch, material, config.law, config.seed, keep)
-    before += config.law.updates
-    every = list(keep.rows)
-    network, stress = None, None
+    before = finished(config.law, keep)
+    networks: dict[str, local.Weights] = {}
     if config.network is not None or config.stress is not None:
         examples = examples_of(law, batch, material)
-        for name, heads, fit_one in (
-            ("network", local.CORRECTIONS, fit_network),
-            ("stress", local.STRESSES, fit_stress),
+        for name, stage, heads, task in (
+            ("network", config.network, local.CORRECTIONS, fit_network),
+            ("polish", config.polish, local.CORRECTIONS, partial(fit_network, whole=True)),
+            ("stress", config.stress, local.STRESSES, fit_stress),
         ):
-            stage = plan[name]
             if stage is None:
                 continue
-            key = jax.random.key(config.seed)
-            begin = local.weights(key, heads, config.width, config.message, config.rounds)
+            begin = networks.get("network") if name == "polish" else None
+            if begin is None:
+                key = jax.random.key(config.seed)
+                begin = local.weights(key, heads, config.width, config.message, config.rounds)
             keep = keeper(name)
-            found = fit_one(law, examples, material, begin, stage, config.seed, keep)
-            network, stress = (found, stress) if name == "network" else (network, found)
-            before += stage.updates
-            every += keep.rows
+            found = task(law, examples, material, begin, stage, config.seed, keep)
+            networks["network" if name == "polish" else name] = found
+            before = finished(stage, keep)
+    network, stress = networks.get("network"), networks.get("stress")
     sizes = (config.width, config.message, config.rounds)
     as_numpy: Any = jax.tree.map(np.asarray, Parameters(law, network, stress))
     model = Equilibrium(as_numpy, sizes, None, config.kind, batch.material)

@@ -96,13 +96,14 @@ def fit_network(
     stage: Stage,
     seed: int,
     keep: "Keeper",
+    whole: bool = False,
 ) -> local.Weights:
-    """Return the network that corrects a law."""
+    """Return the network that corrects a law; see `misses` for `whole`."""
     load = loads(material)
 
     def value(network: local.Weights, some: Truth, frame: Array, begun: Any, twist: Any) -> Array:
         parameters = Parameters(law, network)
-        one = lambda t, f, b, w: misses(parameters, load, t, f, b, w)  # noqa: E731
+        one = lambda t, f, b, w: misses(parameters, load, t, f, b, w, whole)  # noqa: E731
         off = jax.vmap(one)(some, frame, begun, twist)
         return jax.vmap(loss)(*off, some.size, jnp.array(RELEASED)[frame]).mean()
 
