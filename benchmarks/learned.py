@@ -21,10 +21,11 @@ from simulearn.dataset import read_dataset
 from simulearn.grid import Rules, draw_valid
 from simulearn.learn.bundle import bundle_of, shipped
 from simulearn.learn.evaluate import evaluate, for_testing
-from simulearn.learn.model import Designs, Model
+from simulearn.learn.model import Designs, Model, last_frame
+from simulearn.simulate import engine
 
 SETS = ("default", "beams-removed", "2x3", "3x3")
-PAPER = ("the paper's (its own FEA)", "default", 400, "3.03", "", "4.13", "", "2.89", "", "")
+PAPER = ("the paper's (its own FEA)", "default", 400, "3.03", "", "4.13", "", "2.89", *[""] * 4)
 
 
 def designs(count: int) -> Designs:
@@ -50,10 +51,31 @@ def warm(model: Model, count: int, times: int = 9) -> float:
     return float(np.median(spent))
 
 
-def cold(name: str) -> float:
+def warm_last(model: Model, count: int, times: int = 9) -> float:
+    """Return the median seconds of telling the last frame of so many designs."""
+    asked = designs(count)
+    last_frame(model, asked)
+    spent = []
+    for _ in range(times):
+        begun = time.perf_counter()
+        last_frame(model, asked)
+        spent.append(time.perf_counter() - begun)
+    return float(np.median(spent))
+
+
+def by_fea(count: int = 5) -> float:
+    """Return the median seconds of one design by finite elements, everything compiled."""
+    solver, spent = engine("fea"), []
+    for k in range(count + 1):
+        begun = time.perf_counter()
+        solver.simulate([draw_valid(Rules(), 77, k)[0]])
+        spent.append(time.perf_counter() - begun)
+    return float(np.median(spent[1:]))
+
+
+def cold(*words: str) -> float:
     """Return the seconds of the whole command, kernels compiled and kept before."""
-    command = [sys.executable, "-m", "simulearn.cli", "simulate", "saddle"]
-    command += ["--engine", "learned", "--model", name, "--json"]
+    command = [sys.executable, "-m", "simulearn.cli", "simulate", "saddle", *words, "--json"]
     spent = []
     for _ in range(3):
         begun = time.perf_counter()
@@ -82,6 +104,7 @@ def main() -> None:
     report = Report("learned", "Learned models")
     rows: list[tuple[object, ...]] = [PAPER]
     still: list[str] = []
+    frames: dict[str, list[dict[str, float]]] = {}
     for path in sets:
         data = read_dataset(path, stress=False)
         batches = for_testing(data)
@@ -98,8 +121,12 @@ def main() -> None:
                     f"{s['mean_mm']:.2f}",
                     f"{s['rotation_deg']:.2f}",
                     f"{s['gap_mm']:.3f}",
+                    "" if e.bound is None else f"{100 * (e.vertex[:, -1] <= e.bound).mean():.0f}",
+                    int((~e.converged).sum()),
                 )
             )
+            if path == sets[0]:
+                frames[name] = s["frames"]
         still.append(f"{data.config.name} {100 * float((e.motion / e.dimension).mean()):.1f}")
     report.say(
         "Mean distance of all corners of joints and sections in the last frame, % of each trial's "
@@ -109,7 +136,17 @@ def main() -> None:
         + "."
     )
     report.table(
-        ["model", "set", "trials", "mean", "median", "97 %", "worst", "mm", "deg", "gap mm"], rows
+        ["model", "set", "trials", "mean", "median", "97 %", "worst", "mm", "deg", "gap mm",
+         "below their 90 % bound, %", "no answer"],
+        rows,
+    )  # fmt: skip
+    report.say("Frame by frame, mean (97th percentile), % of dimension, on the first set:")
+    report.table(
+        ["model", *map(str, range(12))],
+        [
+            (name, *(f"{f['mean_percent']:.2f} ({f['p97_percent']:.2f})" for f in told))
+            for name, told in frames.items()
+        ],
     )
     report.say("Time of one thread, and how far an answer is from turning with its design:")
     times = []
@@ -122,15 +159,20 @@ def main() -> None:
                 name,
                 f"{1000 * warm(model, 1):.1f}",
                 f"{1000 * warm(model, 100):.0f}",
-                f"{cold(name):.1f}",
+                f"{1000 * warm_last(model, 100):.0f}",
+                f"{cold('--engine', 'learned', '--model', name):.1f}",
                 f"{off[0]:.2f}",
                 f"{off[1]:.2f}",
                 f"{size / 1e6:.1f}",
             )
         )
+    fea = (f"{1000 * by_fea():.0f}", "", "", f"{cold('--engine', 'fea'):.1f}", "0", "0", "")
+    times.append(("finite elements", *fea))
     report.table(
-        ["model", "one rollout, ms", "100 designs, ms", "command, s", "turned, %", "mirrored, %",
-         "MB"],
+        [
+            *("model", "one rollout, ms", "100 designs, ms", "their last frames, ms", "command, s"),
+            *("turned, %", "mirrored, %", "MB"),
+        ],
         times,
     )  # fmt: skip
     report.save()

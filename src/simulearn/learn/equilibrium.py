@@ -24,7 +24,7 @@ from simulearn.mechanics.rollout import loads, start
 from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.skeleton import Flat, Skeleton, flat, skeletons
 
-TRUST = ("trust.weights", "trust.ranges")
+TRUST = ("trust.weights", "trust.ranges", "trust.counts")
 CONVERGED = 0.1  # mm, the last motion of an iteration at most
 AT_ONCE = 8  # designs in one call of a kernel
 
@@ -101,7 +101,7 @@ class Equilibrium:
         """Return law, networks and error estimate by name."""
         arrays = {name: np.asarray(x) for name, x in _named(self.parameters)}
         if self.trust is not None:
-            arrays |= {"trust.weights": self.trust.weights, "trust.ranges": self.trust.ranges}
+            arrays |= {f"trust.{key}": value for key, value in vars(self.trust).items()}
         return arrays
 
     @classmethod
@@ -133,6 +133,8 @@ class Equilibrium:
                     f"weight {name} has the shape {arrays[name].shape}, not {value.shape}"
                 )
         trust = {name: arrays[name] for name in TRUST if name in arrays}
+        if 0 < len(trust) < len(TRUST):
+            raise InputError(f"weight {next(n for n in TRUST if n not in trust)} is missing")
         if extra := arrays.keys() - expected.keys() - trust.keys():
             raise InputError(f"weight {min(extra)} does not belong to this architecture")
         tree = jax.tree.structure(blank)

@@ -22,7 +22,8 @@ if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
-OUTSIDE = 2.0  # by how much the logarithm grows per width of the training range beyond it
+OUTSIDE = 1.0  # by how much the logarithm grows per width of the training range beyond it
+UNLIKE = 2.5  # times as much for other topologies, see docs/models/equilibrium.md
 
 Numbers = NDArray[np.float64]
 
@@ -34,14 +35,18 @@ class Trust:
     Attributes:
         weights: (K,) of the signs of error.
         ranges: (2, 2) least and most grid dimension and beam length of the training, mm.
+        counts: (2,) how many joints and beams its grids had.
     """
 
     weights: Numbers
     ranges: Numbers
+    counts: Numbers
 
     def bound(self, designs: Designs, told: Shapes) -> Numbers:
         """Return the mean vertex error of the last frame that nine of ten stay below: (T,) mm."""
-        return np.exp(signs(designs, told) @ self.weights + OUTSIDE * beyond(designs, self.ranges))
+        log = signs(designs, told) @ self.weights + OUTSIDE * beyond(designs, self.ranges)
+        here = (designs.flat.shape[1], len(designs.beams))
+        return np.exp(log) * (1.0 if here == tuple(self.counts) else UNLIKE)
 
 
 def signs(designs: Designs, told: Shapes) -> Numbers:
@@ -76,7 +81,8 @@ def trust_of(signs: Numbers, error: Numbers, learnt: "Sequence[Batch]") -> Trust
     size = np.concatenate([b.dimensions for b in learnt])
     length = np.concatenate([beam_lengths(b).ravel() for b in learnt])
     ranges = [[x.min(), x.max()] for x in (size, length)]
-    return Trust(weights, np.array(ranges, np.float64))
+    counts = (learnt[0].flat.shape[1], len(learnt[0].beams))
+    return Trust(weights, np.array(ranges, np.float64), np.array(counts, np.float64))
 
 
 def beyond(designs: Designs, ranges: Numbers) -> Numbers:
