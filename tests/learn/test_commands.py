@@ -45,7 +45,7 @@ def test_train_leaves_a_model_and_a_curve(small, tmp_path):
     assert width(tmp_path / "run" / "loss.png") > 1000
     assert bundle_of(figures["model"]).card.training["rate"] == small.rate
     again, stdout = run("train", config, "-o", tmp_path / "run")
-    assert "2 epochs" in again.output
+    assert "epoch 2" in again.output
 
 
 def test_train_says_what_is_missing(small, tmp_path):

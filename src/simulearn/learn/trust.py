@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
-OUTSIDE = 1.0  # by how much the logarithm grows per width of the training range beyond it
+OUTSIDE = 2.0  # by how much the logarithm grows per width of the training range beyond it
 UNLIKE = 2.5  # times as much for other topologies, see docs/models/equilibrium.md
 
 Numbers = NDArray[np.float64]
