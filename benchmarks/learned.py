@@ -14,6 +14,7 @@ import sys
 import time
 from pathlib import Path
 
+import jax
 import numpy as np
 
 from report import Report
@@ -109,6 +110,7 @@ def main() -> None:
         data = read_dataset(path, stress=False)
         batches = for_testing(data)
         for name in shipped():
+            jax.clear_caches()  # each topology has its kernels, and memory maps are not endless
             e = evaluate(bundle_of(name).model, batches).errors
             s = e.summary()
             rows.append(
