@@ -27,6 +27,7 @@ LONGEST = 15.0  # mm, that anything may move in one step
 NEAR = 3.0  # mm, the motion below which the stiffness of forces is added
 CLOSE = 1.0  # mm, the motion below which old factors are tried
 AGAIN = 4  # steps with the same factors, at most
+FREE = 8  # steps that may lead uphill: bending at first stretches
 SLOW = 0.3  # of the step before; where a step is longer, new factors are needed
 
 
@@ -385,7 +386,8 @@ def iterate(
             share = jnp.where(beyond > -slope / 4, slope / (slope - beyond), 1.0)
             return share, jnp.array(0.0)
 
-        begin = (jnp.array(1.0), jnp.where(jnp.isfinite(way), way, 0.0))
+        far = jnp.isfinite(way) & (count >= FREE)
+        begin = (jnp.array(1.0), jnp.where(far, way, 0.0))
         share, _ = jax.lax.while_loop(lambda carry: carry[1] > CLOSE, shorter, begin)
         state = moved(state, share * step[0], share * step[1])
 
