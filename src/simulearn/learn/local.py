@@ -35,7 +35,8 @@ class Heads(NamedTuple):
     size: np.ndarray
 
 
-def _plain(mirror: np.ndarray, flip: np.ndarray, size: np.ndarray) -> Heads:
+def signed(mirror: np.ndarray, flip: np.ndarray, size: np.ndarray) -> Heads:
+    """Return heads that change their signs only."""
     order = np.arange(len(size))
     return Heads((order, mirror), (order, flip), size)
 
@@ -57,7 +58,8 @@ def _at_corners(mirror: list[int], flip: list[int], size: float) -> Heads:
     )
 
 
-def _joined(*heads: Heads) -> Heads:
+def joined(*heads: Heads) -> Heads:
+    """Return heads one after the other."""
     starts = np.cumsum([0, *(len(h.size) for h in heads)])
     join = lambda pairs: (  # noqa: E731
         np.concatenate([order + at for (order, _), at in zip(pairs, starts, strict=False)]),
@@ -72,13 +74,13 @@ def _joined(*heads: Heads) -> Heads:
 
 _VECTOR = _at_corners([1, -1, 1], [1, 1, -1], 0.2)  # mm
 _TENSOR = _at_corners([1, 1, 1, -1, 1, -1], [1, 1, 1, 1, -1, -1], 0.01)  # MPa; 11 22 33 12 13 23
-CORRECTIONS = _joined(
-    _plain(TWIST_MIRROR, TWIST_FLIP, 0.3 * TWIST_SIZE),  # of the rest
-    _plain(np.ones(6), np.ones(6), np.full(6, 0.5)),  # of the stiffness
+CORRECTIONS = joined(
+    signed(TWIST_MIRROR, TWIST_FLIP, 0.3 * TWIST_SIZE),  # of the rest
+    signed(np.ones(6), np.ones(6), np.full(6, 0.5)),  # of the stiffness
     _VECTOR,  # warping at the face
     _VECTOR,  # and at the middle
 )
-STRESSES = _joined(_TENSOR, _TENSOR)  # near the face and near the middle
+STRESSES = joined(_TENSOR, _TENSOR)  # near the face and near the middle
 REST, STIFF, FACE, MIDDLE = slice(0, 6), slice(6, 12), slice(12, 24), slice(24, 36)
 
 

@@ -21,7 +21,7 @@ from simulearn.learn.train import fingerprint, split, train
 
 NOISE = (0.0, 0.03, 0.1, 0.3)
 PENALTY = (0.0, 0.1, 1.0, 10.0)
-SHARES = (0.25, 0.5, 1.0)  # of the trials
+SHARES = (0.25, 0.5, 1.0)  # of the configuration's trials
 COLUMNS = ("noise", "penalty", "trials", "validation_percent", "gap_mm")
 
 
@@ -35,7 +35,7 @@ def search(
     """Run a search and return all runs and the best of them.
 
     Args:
-        config: of each run, but for noise, penalty and trials.
+        config: of each run, but for noise and penalty; its trials are the most.
         data: to learn from.
         folder: where search.json and search.csv are kept; it exists.
         runs: how many in all.
@@ -57,8 +57,8 @@ def search(
         if told.get("identity") != identity:
             raise InputError(f"{file}: is of another search; name another folder")
         kept = told["runs"]
-    available = sum(int((~b.test).sum()) for b in data.batches)
-    sizes = sorted({max(2 * config.validation, round(share * available)) for share in SHARES})
+    whole = config.trials or sum(int((~b.test).sum()) for b in data.batches)
+    sizes = sorted({max(2 * config.validation, round(share * whole)) for share in SHARES})
     space: dict[str, optuna.distributions.BaseDistribution] = {
         "noise": optuna.distributions.CategoricalDistribution(NOISE),
         "penalty": optuna.distributions.CategoricalDistribution(PENALTY),

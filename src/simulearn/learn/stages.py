@@ -84,7 +84,7 @@ def fit_law(batch: Batch, material: Material, stage: Stage, seed: int, keep: "Ke
 
     zero = jax.tree.map(jnp.zeros_like, guess)
     draw = lambda k, f: (_take(trials, k), f)  # noqa: E731
-    fitted = _fit(zero, value, draw, stage, len(batch), seed, keep)
+    fitted = descend(zero, value, draw, stage, len(batch), seed, keep)
     return whole(fitted)
 
 
@@ -111,7 +111,7 @@ def fit_network(
         begun = jax.tree.map(lambda x: x[k, f], examples.begun)
         return _take(examples.trials, k), f, begun, examples.twist[k, f]
 
-    return _fit(begin, value, draw, stage, len(examples.twist), seed, keep)
+    return descend(begin, value, draw, stage, len(examples.twist), seed, keep)
 
 
 def fit_stress(
@@ -139,7 +139,7 @@ def fit_stress(
     def draw(k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
         return _take(examples.trials, k), f, examples.stress[k, f]
 
-    return _fit(begin, value, draw, stage, len(examples.twist), seed, keep)
+    return descend(begin, value, draw, stage, len(examples.twist), seed, keep)
 
 
 def examples_of(law: Law, batch: Batch, material: Material) -> Examples:
@@ -221,7 +221,7 @@ class Keeper:
             checkpoint.save(self.path, run, {**told, "rows": [asdict(r) for r in self.rows]})
 
 
-def _fit(
+def descend(
     begin: Any,
     value: Callable[..., Array],
     draw: Callable[[np.ndarray, np.ndarray], tuple[Any, ...]],
