@@ -23,6 +23,7 @@ from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.rollout import loads, start
 from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.skeleton import Flat, Skeleton, flat, skeletons
+from simulearn.traced import Traced
 
 TRUST = ("trust.weights", "trust.ranges", "trust.counts")
 CONVERGED = 0.1  # mm, the last motion of an iteration at most
@@ -50,7 +51,7 @@ class Equilibrium:
 
     @cached_property
     def _parameters(self) -> Parameters:
-        return jax.tree.map(jnp.asarray, self.parameters)
+        return jax.device_put(self.parameters)
 
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology; see `learn.model.Model`."""
@@ -75,16 +76,15 @@ class Equilibrium:
         count = len(designs)
         bones = skeletons(designs.beams, designs.fixed, designs.flat)
         parameters = self._parameters._replace(stress=None) if last else self._parameters
-        kernel = partial(_kernel(self.material, self.kind, last), parameters)
+        kernel = partial(_kernel(self.material, last), parameters)
         size = AT_ONCE if count >= AT_ONCE else 1
         parts = [np.arange(a, a + size) % count for a in range(0, count, size)]
 
         def run(which: NDArray[np.int64]) -> Any:
             take = lambda x: x[which]  # noqa: E731
             some = Skeleton(*map(take, bones))
-            return jax.tree.map(
-                np.asarray, kernel(some, designs.flat[which], designs.actuators[which])
-            )
+            told = kernel(some, designs.flat[which], designs.actuators[which])
+            return Shapes(*jax.tree.map(np.asarray, told))
 
         # One after the other: two kernels at once wait for each other for ever where JAX has one
         # thread.
@@ -113,14 +113,14 @@ class Equilibrium:
         Raises:
             InputError: a weight is missing, too many, or has the wrong shape.
         """
-        sizes, key = (config["width"], config["message"], config["rounds"]), jax.random.key(0)
+        sizes = config["width"], config["message"], config["rounds"]
         network = any(name.startswith("network.") for name in arrays)
         stress = any(name.startswith("stress.") for name in arrays)
         shape_of = lambda heads: jax.eval_shape(  # noqa: E731
-            lambda: local.weights(key, heads, *sizes)
+            lambda: local.weights(jax.random.key(0), heads, *sizes)
         )
         blank = Parameters(
-            first_guess(),
+            jax.eval_shape(first_guess),
             shape_of(local.CORRECTIONS) if network else None,
             shape_of(local.STRESSES) if stress else None,
         )
@@ -165,18 +165,16 @@ def _named(parameters: Parameters) -> list[tuple[str, Any]]:
 
 
 @lru_cache
-def _kernel(material: str, kind: str, last: bool) -> Any:
+def _kernel(material: str, last: bool) -> Traced:
     """Return the compiled function: parameters, skeletons, joints, ratios -> frames."""
-    del kind  # two kinds have parameters of other structures, and kernels of their own
     data = load_material(material)
     load = loads(data)
 
-    @jax.jit
-    def kernel(parameters: Parameters, bones: Skeleton, joints: Any, ratio: Any) -> Shapes:
+    def kernel(parameters: Parameters, bones: Skeleton, joints: Any, ratio: Any) -> Any:
         one = partial(_last if last else _whole, parameters, load, data)
-        return jax.vmap(one)(bones, joints, ratio)
+        return tuple(jax.vmap(one)(bones, joints, ratio))
 
-    return kernel
+    return Traced(f"equilibrium {material} {last}", kernel)
 
 
 def _last(

@@ -1,0 +1,88 @@
+"""Traced functions, kept between runs: tracing a simulator takes seconds, reading it back does not.
+
+What a function traces to, for the shapes of its arguments, is kept as StableHLO beside the compiled
+kernels (see `compiled`). Its file is named by all that it follows from: the source of SimuLearn,
+the versions of JAX, the platform, the name of the function and the shapes. What cannot be read is
+made anew; where nothing can be written, every run traces for itself.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jax
+import jaxlib
+from jax import export
+
+import simulearn.compiled  # noqa: F401  double precision, and the folder for kernels
+from simulearn.errors import InputError
+from simulearn.files import replacing
+
+PACKAGE = Path(__file__).parent
+Call = Callable[[list[Any]], Any]
+
+
+class Traced:
+    """A function that is compiled for the shapes it meets, and traced once on a machine.
+
+    Args:
+        name: of the function; two that share it and their shapes must do the same.
+        function: of any trees of arrays, to tuples, lists, dictionaries and arrays.
+    """
+
+    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+        self.name, self.function = name, function
+        self._calls: dict[Any, Call] = {}
+
+    def __call__(self, *args: Any) -> Any:
+        """Return what the function returns."""
+        leaves, tree = jax.tree.flatten(args)
+        shapes = tuple((x.shape, str(x.dtype)) for x in leaves)
+        if (tree, shapes) not in self._calls:
+            self._calls[tree, shapes] = self._found(leaves, tree, shapes)
+        return self._calls[tree, shapes](leaves)
+
+    def _found(self, leaves: list[Any], tree: Any, shapes: Any) -> Call:
+        """Return the compiled function, from what was kept of it or traced now."""
+        fresh = jax.jit(lambda flat: self.function(*jax.tree.unflatten(tree, flat)))
+        kept_in = jax.config.values["jax_compilation_cache_dir"]
+        if not kept_in:
+            return fresh
+        told = (source(), self.name, str(tree), shapes, jax.default_backend())
+        name = hashlib.sha256(repr(told).encode()).hexdigest()
+        file = Path(kept_in) / "traced" / f"{name}.stablehlo"
+        with suppress(OSError, ValueError):
+            return jax.jit(export.deserialize(bytearray(_whole(file.read_bytes()))).call)
+        like = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in leaves]
+        traced = export.export(fresh)(like)
+        with suppress(OSError, InputError):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            with replacing(file) as temporary:
+                kept = bytes(traced.serialize())
+                temporary.write_bytes(hashlib.sha256(kept).digest() + kept)
+        return jax.jit(traced.call)
+
+
+def _whole(told: bytes) -> bytes:
+    """Return what was kept, if it is what its hash, the first 32 bytes, says."""
+    if hashlib.sha256(told[32:]).digest() != told[:32]:
+        raise ValueError("damaged")
+    return told[32:]
+
+
+@cache
+def source() -> str:
+    """Return a hash of SimuLearn's source, its data for kernels and the versions of JAX."""
+    digest = hashlib.sha256(f"{jax.__version__} {jaxlib.__version__}".encode())
+    for file in sorted(_files()):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return digest.hexdigest()
+
+
+def _files() -> Iterator[Path]:
+    for folder in ("learn", "material", "mechanics"):
+        for ending in ("*.py", "*.json", "*.toml"):
+            yield from (PACKAGE / folder).glob(ending)
