@@ -27,7 +27,7 @@ from simulearn.traced import Traced
 
 TRUST = ("trust.weights", "trust.ranges", "trust.counts")
 CONVERGED = 0.1  # mm, the last motion of an iteration at most
-AT_ONCE = 8  # designs in one call of a kernel
+AT_ONCE = 4  # designs in one call of a kernel
 
 Weights = dict[str, NDArray[Any]]
 
@@ -69,7 +69,12 @@ class Equilibrium:
         """Return the last frame; see `learn.model.last_frame`."""
         told = self.told(designs, last=True)
         joints, sections = np.asarray(told.joints)[:, 0], np.asarray(told.sections)[:, 0]
-        return Last(joints, sections, _good(told))
+        good = _good(told)
+        if not good.all():  # frame by frame more find their way
+            whole = self.told(designs.take(~good))
+            joints[~good], sections[~good] = whole.joints[:, -1], whole.sections[:, -1]
+            good[~good] = _good(whole)
+        return Last(joints, sections, good)
 
     def told(self, designs: Designs, last: bool = False) -> Shapes:
         """Return twelve frames of each design, or the last, and what the error estimate goes by."""
@@ -84,13 +89,12 @@ class Equilibrium:
             take = lambda x: x[which]  # noqa: E731
             some = Skeleton(*map(take, bones))
             told = kernel(some, designs.flat[which], designs.actuators[which])
-            return Shapes(*jax.tree.map(np.asarray, told))
+            return jax.tree.map(np.asarray, told)
 
         # One after the other: two kernels at once wait for each other for ever where JAX has one
         # thread.
         told = [run(which) for which in parts]
-        joined: Shapes = jax.tree.map(lambda *x: np.concatenate(x)[:count], *told)
-        return joined
+        return Shapes(*jax.tree.map(lambda *x: np.concatenate(x)[:count], *told))
 
     def config(self) -> dict[str, Any]:
         """Return the architecture."""

@@ -1,11 +1,13 @@
 """Searching the hyperparameters of the paper's Figure 9: noise, penalty and size of the data.
 
 Each run is a short training with the phases of the configuration; which combination is tried next
-is decided by Optuna from those before. The runs are kept, so a search goes on where it was stopped.
+is decided by Optuna from those before, and none is tried twice. The runs are kept, so a search
+goes on where it was stopped.
 """
 
 import json
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -38,7 +40,7 @@ def search(
         config: of each run, but for noise and penalty; its trials are the most.
         data: to learn from.
         folder: where search.json and search.csv are kept; it exists.
-        runs: how many in all.
+        runs: how many in all; at most as many as there are combinations.
         progress: called with (runs done, runs in all).
 
     Raises:
@@ -64,23 +66,32 @@ def search(
         "penalty": optuna.distributions.CategoricalDistribution(PENALTY),
         "trials": optuna.distributions.CategoricalDistribution(sizes),
     }
+    combinations = [dict(zip(space, c, strict=True)) for c in product(NOISE, PENALTY, sizes)]
+
+    def known(row: dict[str, Any]) -> optuna.trial.FrozenTrial:
+        return optuna.trial.create_trial(
+            params={name: row[name] for name in space},
+            distributions=space,
+            value=row["validation_percent"],
+        )
+
     study = optuna.create_study(sampler=optuna.samplers.TPESampler(seed=config.seed))
     for row in kept:
-        study.add_trial(
-            optuna.trial.create_trial(
-                params={name: row[name] for name in space},
-                distributions=space,
-                value=row["validation_percent"],
-            )
-        )
+        study.add_trial(known(row))
     progress(len(kept), runs)
     for k in range(len(kept), runs):
         # A sampler of its own for each run, so that a search that was stopped goes on the same.
         study.sampler = optuna.samplers.TPESampler(seed=config.seed + k)
-        asked = study.ask(space)
-        row = _measured(_varied(config, **asked.params), data)
-        kept.append({**asked.params, **row})
-        study.tell(asked, row["validation_percent"])
+        tried = [{name: row[name] for name in space} for row in kept]
+        left = [c for c in combinations if c not in tried]
+        if not left:
+            break
+        asked = study.ask(space).params
+        if asked not in left:  # measured once is enough
+            asked = left[np.random.default_rng([config.seed, k]).integers(len(left))]
+        row = _measured(_varied(config, **asked), data)
+        kept.append({**asked, **row})
+        study.add_trial(known(kept[-1]))
         write(identity, kept, folder)
         progress(k + 1, runs)
     return write(identity, kept, folder)

@@ -81,7 +81,7 @@ def rollout(
     Args:
         bones: how the grid hangs together.
         plan: the flat grid.
-        el: halves in frames 1 to 11; see `every_frame`.
+        el: halves in frames 1 to 11, or fewer: equal steps of release, then creep.
         tolerance: of the last motion of an iteration, mm.
         most: iterations in a frame. The first, when a large grid hangs down, takes the most.
     """
@@ -96,7 +96,7 @@ def rollout(
 
     begin = start(plan)
     # No extrapolation over a jump in gravity.
-    fresh = jnp.array([1.0, 1.0] + [0.0] * (STEPS - 2) + [1.0])
+    fresh = jnp.array([1.0, 1.0] + [0.0] * (len(el.weight) - 3) + [1.0])
     _, (states, ways) = jax.lax.scan(frame, (begin, begin), (el, fresh))
     return states, ways
 

@@ -200,38 +200,49 @@ def search_picture(figures: dict[str, Any]) -> Figure:
         ):
             _marginal(ax, runs, key, words)
         ax = axes[1, 0]
-        size = [run["validation_percent"] for run in runs]
-        shown = ax.scatter(
-            [run["noise"] for run in runs],
-            [run["penalty"] for run in runs],
-            c=size,
-            s=[12 + 60 * run["trials"] / max(r["trials"] for r in runs) for run in runs],
-            cmap="viridis_r",
+        (x, noises), (y, penalties) = (_levels(runs, key) for key in ("noise", "penalty"))
+        z, sizes = _levels(runs, "trials")
+        aside = 0.25 * (z - (len(sizes) - 1) / 2)  # runs that differ by their trials alone
+        error = [run["validation_percent"] for run in runs]
+        area = 16 * (1 + z)
+        shown = ax.scatter(x + aside, y, c=error, s=area, cmap="viridis_r")
+        k = runs.index(figures["best"])
+        ax.plot(x[k] + aside[k], y[k], "o", ms=13, mfc="none", mec=ANSWER, mew=1.5)
+        ax.set_xticks(range(len(noises)), noises)
+        ax.set_yticks(range(len(penalties)), penalties)
+        ax.set(xlabel="noise γ", ylabel="penalty a")
+        ax.margins(0.12)
+        ax.set_title(
+            f"combinations; side by side {', '.join(sizes)} trials", fontsize=8, loc="left"
         )
-        best = figures["best"]
-        ax.plot(best["noise"], best["penalty"], "o", ms=12, mfc="none", mec=ANSWER, mew=1.5)
-        ax.set_xscale("symlog", linthresh=0.01)
-        ax.set_yscale("symlog", linthresh=0.1)
-        ax.set_xlabel("noise γ")
-        ax.set_ylabel("penalty a")
-        ax.set_title("combinations (larger: more trials)", fontsize=8, loc="left")
         figure.colorbar(shown, ax=ax, label="vertex error, %")
         _plain(ax)
     return figure
 
 
+def _levels(runs: Sequence[dict[str, Any]], key: str) -> tuple[NDArray[np.int64], list[str]]:
+    """Return the level of each run in one of the parameters, and what the levels are."""
+    levels = sorted({run[key] for run in runs})
+    return np.array([levels.index(run[key]) for run in runs]), [f"{level:g}" for level in levels]
+
+
 def _marginal(ax: Axes, runs: Sequence[dict[str, Any]], key: str, words: str) -> None:
-    """Draw vertex error and gap of all runs over one of their parameters."""
-    x = [run[key] for run in runs]
-    ax.plot(x, [run["validation_percent"] for run in runs], "o", ms=3.5, color=ANSWER)
-    ax.set_ylabel("vertex error, % of dimension", color=ANSWER)
+    """Draw vertex error and gap of all runs over one of their parameters; lines join the best."""
+    x, levels = _levels(runs, key)
     other = ax.twinx()
-    other.plot(x, [run["gap_mm"] for run in runs], "s", ms=3, color=TRUTH, mfc="none")
-    other.set_ylabel("dislocation, mm", color=TRUTH)
-    other.set_ylim(bottom=0)
+    for axes, column, colour, mark, label, aside in (
+        (ax, "validation_percent", ANSWER, "o", "vertex error, % of dimension", -0.08),
+        (other, "gap_mm", TRUTH, "s", "dislocation, mm", 0.08),
+    ):
+        told = np.array([run[column] for run in runs])
+        best = [told[x == k].min() for k in range(len(levels))]
+        axes.plot(x + aside, told, mark, ms=3.5, color=colour, mfc="none" if mark == "s" else None)
+        axes.plot(np.arange(len(levels)) + aside, best, "-", lw=1, color=colour)
+        axes.set_ylabel(label, color=colour)
+        axes.set_ylim(0, 1.06 * told.max())
     other.spines["top"].set_visible(False)
-    if key != "trials":
-        ax.set_xscale("symlog", linthresh=0.01 if key == "noise" else 0.1)
+    ax.set_xticks(range(len(levels)), levels)
+    ax.set_xlim(-0.4, len(levels) - 0.6)
     ax.set_xlabel(words)
     _plain(ax)
 
