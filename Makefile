@@ -30,6 +30,7 @@ bench: .venv/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/dataset.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/print_time.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/learned.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/learned_speed.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/curve.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/inverse.py
 

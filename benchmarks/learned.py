@@ -1,98 +1,24 @@
-"""How good and how fast the learned models are that come with SimuLearn.
+"""How good the learned models are that come with SimuLearn.
 
 Accuracy is measured on the test trials of the data set that a model has learnt from, and on sets
-of other topologies where they are there; the truth is always the finite elements'. Time is
-that of one thread.
+of other topologies where they are there; the truth is always the finite elements'. Their speed is
+measured by `learned_speed.py`.
 
     python benchmarks/learned.py [--data data/default.h5 data/3x3.h5 ...]
 """
 
 import argparse
-import os
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import jax
-import numpy as np
 
 from report import Report
 from simulearn.dataset import read_dataset
-from simulearn.grid import Rules, draw_valid
 from simulearn.learn.bundle import bundle_of, shipped
 from simulearn.learn.evaluate import evaluate, for_testing
-from simulearn.learn.model import Designs, Model, last_frame
-from simulearn.simulate import engine
 
 SETS = ("default", "beams-removed", "2x3", "3x3")
 PAPER = ("the paper's (its own FEA)", "default", 400, "3.03", "", "4.13", "", "2.89", *[""] * 4)
-
-
-def designs(count: int) -> Designs:
-    """Return random 2x2 designs."""
-    grids = [draw_valid(Rules(), 77, k)[0].centred for k in range(count)]
-    return Designs(
-        grids[0].beams,
-        grids[0].fixed,
-        np.stack([g.joints for g in grids]),
-        np.stack([g.actuators for g in grids]),
-    )
-
-
-def warm(model: Model, count: int, times: int = 9) -> float:
-    """Return the median seconds of answering so many designs, everything compiled."""
-    asked = designs(count)
-    model.rollout(asked)
-    spent = []
-    for _ in range(times):
-        begun = time.perf_counter()
-        model.rollout(asked)
-        spent.append(time.perf_counter() - begun)
-    return float(np.median(spent))
-
-
-def warm_last(model: Model, count: int, times: int = 9) -> float:
-    """Return the median seconds of telling the last frame of so many designs."""
-    asked = designs(count)
-    last_frame(model, asked)
-    spent = []
-    for _ in range(times):
-        begun = time.perf_counter()
-        last_frame(model, asked)
-        spent.append(time.perf_counter() - begun)
-    return float(np.median(spent))
-
-
-def by_fea(count: int = 5) -> float:
-    """Return the median seconds of one design by finite elements, everything compiled."""
-    solver, spent = engine("fea"), []
-    for k in range(count + 1):
-        begun = time.perf_counter()
-        solver.simulate([draw_valid(Rules(), 77, k)[0]])
-        spent.append(time.perf_counter() - begun)
-    return float(np.median(spent[1:]))
-
-
-def cold(*words: str) -> float:
-    """Return the seconds of the whole command, kernels compiled and kept before."""
-    command = [sys.executable, "-m", "simulearn.cli", "simulate", "saddle", *words, "--json"]
-    spent = []
-    for _ in range(3):
-        begun = time.perf_counter()
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=os.environ)
-        spent.append(time.perf_counter() - begun)
-    return min(spent)
-
-
-def turned(model: Model) -> tuple[float, float]:
-    """Return how far answers to turned and to mirrored designs are off, % of dimension."""
-    sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "learn"))
-    from conformance import mirrored_error, turned_error
-
-    asked = designs(40)
-    size = float(asked.dimensions.mean())
-    return 100 * turned_error(model, asked) / size, 100 * mirrored_error(model, asked) / size
 
 
 def main() -> None:
@@ -150,33 +76,6 @@ def main() -> None:
             for name, told in frames.items()
         ],
     )
-    report.say("Time of one thread, and how far an answer is from turning with its design:")
-    times = []
-    for name in shipped():
-        model = bundle_of(name).model
-        off = turned(model)
-        size = sum(f.stat().st_size for f in bundle_of(name).path.iterdir())
-        times.append(
-            (
-                name,
-                f"{1000 * warm(model, 1):.1f}",
-                f"{1000 * warm(model, 100):.0f}",
-                f"{1000 * warm_last(model, 100):.0f}",
-                f"{cold('--engine', 'learned', '--model', name):.1f}",
-                f"{off[0]:.2f}",
-                f"{off[1]:.2f}",
-                f"{size / 1e6:.1f}",
-            )
-        )
-    fea = (f"{1000 * by_fea():.0f}", "", "", f"{cold('--engine', 'fea'):.1f}", "0", "0", "")
-    times.append(("finite elements", *fea))
-    report.table(
-        [
-            *("model", "one rollout, ms", "100 designs, ms", "their last frames, ms", "command, s"),
-            *("turned, %", "mirrored, %", "MB"),
-        ],
-        times,
-    )  # fmt: skip
     report.save()
 
 
