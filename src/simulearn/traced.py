@@ -40,7 +40,7 @@ class Traced:
     def __call__(self, *args: Any) -> Any:
         """Return what the function returns."""
         leaves, tree = jax.tree.flatten(args)
-        shapes = tuple((x.shape, str(x.dtype)) for x in leaves)
+        shapes = tuple((x.shape, x.dtype) for x in leaves)
         if (tree, shapes) not in self._calls:
             self._calls[tree, shapes] = self._found(leaves, tree, shapes)
         return self._calls[tree, shapes](leaves)
