@@ -312,10 +312,11 @@ def _ranking(found: "Ranking", engine: str) -> dict[str, Any]:
 def _table(found: "Ranking", goals: bool) -> Table:
     """Return the suggestions."""
     count = len(found.suggestions)
+    shown = "five that differ" if count > len(found.best) else "the best first"
     title = f"{found.error_mm:.2f} mm as it is; " if goals else ""
     table = Table(
         box=None,
-        title=f"{title}{count} valid modifications, five that differ",
+        title=f"{title}{count} valid modifications, {shown}",
         title_justify="left",
     )
     table.add_column("", justify="right")
