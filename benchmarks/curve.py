@@ -33,17 +33,18 @@ WORDS = {
 COLOURS = ("#8c8c8c", "#8a5fb0", "#2a78b8", "#e8862e")
 UPDATES = 6000  # of the network on mechanics
 ALONE = (64, 16, 4)  # width, message and rounds of the network without
-EPOCHS = (2, 15)  # of the paper's network: from true frames, in whole rollouts
 ALONE_STAGE = Stage(updates=4000, batch=16, rate=2e-3)
+EPOCHS = (2, 15)  # of the paper's network: from true frames, in whole rollouts
 
 
 def trained(name: str, size: int, data: Dataset, folder: Path) -> Model:
     """Return a model that has learnt from so many trials, or go on with one."""
-    least = {"trials": size, "validation": 8}
-    config = read_config("beams" if name == "network" else name).model_copy(update=least)
+    share = {"trials": size, "validation": 8}
+    config = read_config("beams" if name == "network" else name).model_copy(update=share)
     folder.mkdir(parents=True, exist_ok=True)
     if name == "network":
-        keep = Keeper("network", folder / "network.safetensors", f"{ALONE} {size} {data.sha256}")
+        identity = f"{ALONE} {ALONE_STAGE} {size} {data.sha256}"
+        keep = Keeper("network", folder / "network.safetensors", identity)
         batch = split(config, data)[0][0]
         return fit_network_only(batch, ALONE, ALONE_STAGE, config.seed, keep)
     if isinstance(config, Fit):

@@ -4,12 +4,15 @@ All in one run: warm rollouts and cold commands beside those of the finite eleme
 of one thread.
 
     python benchmarks/learned_speed.py
+    with the environment of the Makefile's ONE_THREAD
 """
 
 import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,26 +35,14 @@ def designs(count: int) -> Designs:
     )
 
 
-def warm(model: Model, count: int, times: int = 9) -> float:
+def warm(answer: Callable[[Designs], object], count: int, times: int = 9) -> float:
     """Return the median seconds of answering so many designs, everything compiled."""
     asked = designs(count)
-    model.rollout(asked)
+    answer(asked)
     spent = []
     for _ in range(times):
         begun = time.perf_counter()
-        model.rollout(asked)
-        spent.append(time.perf_counter() - begun)
-    return float(np.median(spent))
-
-
-def warm_last(model: Model, count: int, times: int = 9) -> float:
-    """Return the median seconds of telling the last frame of so many designs."""
-    asked = designs(count)
-    last_frame(model, asked)
-    spent = []
-    for _ in range(times):
-        begun = time.perf_counter()
-        last_frame(model, asked)
+        answer(asked)
         spent.append(time.perf_counter() - begun)
     return float(np.median(spent))
 
@@ -103,9 +94,9 @@ def main() -> None:
         times.append(
             (
                 name,
-                f"{1000 * warm(model, 1):.1f}",
-                f"{1000 * warm(model, 100):.0f}",
-                f"{1000 * warm_last(model, 100):.0f}",
+                f"{1000 * warm(model.rollout, 1):.1f}",
+                f"{1000 * warm(model.rollout, 100):.0f}",
+                f"{1000 * warm(partial(last_frame, model), 100):.0f}",
                 f"{cold('--engine', 'learned', '--model', name):.1f}",
                 f"{off[0]:.1e}",
                 f"{off[1]:.1e}",

@@ -7,7 +7,7 @@ made anew; where nothing can be written, every run traces for itself.
 """
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -22,6 +22,7 @@ from simulearn.errors import InputError
 from simulearn.files import replacing
 
 PACKAGE = Path(__file__).parent
+SOURCE = (".py", ".toml")  # code, and data such as the material
 Call = Callable[[list[Any]], Any]
 
 
@@ -75,14 +76,9 @@ def _whole(told: bytes) -> bytes:
 
 @cache
 def source() -> str:
-    """Return a hash of SimuLearn's source, its data for kernels and the versions of JAX."""
+    """Return a hash of SimuLearn's source and of the versions of JAX."""
     digest = hashlib.sha256(f"{jax.__version__} {jaxlib.__version__}".encode())
-    for file in sorted(_files()):
-        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    for file in sorted(f for f in PACKAGE.rglob("*") if f.suffix in SOURCE):
+        name = file.relative_to(PACKAGE).as_posix()
+        digest.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()
-
-
-def _files() -> Iterator[Path]:
-    for folder in ("learn", "material", "mechanics"):
-        for ending in ("*.py", "*.json", "*.toml"):
-            yield from (PACKAGE / folder).glob(ending)

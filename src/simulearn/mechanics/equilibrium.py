@@ -380,8 +380,9 @@ def iterate(
         forces, by = balance(bones, el, state, jnp.where(before < NEAR, 1.0, 0.0))
         step, way = asked(forces, by)
 
+        # Where a step leads beyond the lowest point along it, back to where that may lie. A loop of
+        # one round at most: of a condition, vmap would compute both branches every time.
         def shorter(carry: tuple[Array, Array]) -> tuple[Array, Array]:
-            # Where a step leads beyond the lowest point along it, back to where that may lie.
             slope, beyond = _power(forces, step), _power(forces_in(moved(state, *step)), step)
             share = jnp.where(beyond > -slope / 4, slope / (slope - beyond), 1.0)
             return share, jnp.array(0.0)
