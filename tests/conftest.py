@@ -5,6 +5,13 @@ import sys
 import pytest
 
 from simulearn import cli
+from simulearn.compiled import make_room
+
+
+@pytest.fixture(scope="module", autouse=True)
+def room():
+    """Tests compile more kernels of their own than one process may hold."""
+    make_room()
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ import jax
 import jaxlib
 from jax import export
 
-import simulearn.compiled  # noqa: F401  double precision, and the folder for kernels
+from simulearn.compiled import make_room
 from simulearn.errors import InputError
 from simulearn.files import replacing
 
@@ -48,6 +48,7 @@ class Traced:
 
     def _found(self, leaves: list[Any], tree: Any, shapes: Any) -> Call:
         """Return the compiled function, from what was kept of it or traced now."""
+        make_room()
         fresh = jax.jit(lambda flat: self.function(*jax.tree.unflatten(tree, flat)))
         kept_in = jax.config.values["jax_compilation_cache_dir"]
         if not kept_in:

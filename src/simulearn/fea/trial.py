@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.compiled import make_room
 from simulearn.errors import ComputationError
 from simulearn.fea.equilibrium import Control, Equilibrium, State
 from simulearn.fea.laws import law_of
@@ -97,6 +98,7 @@ def simulate_grid(
         ComputationError: an increment finds no equilibrium.
     """
     begun = time.perf_counter()
+    make_room()
     problem = Equilibrium(
         mesh(grid, material, layout),
         law_of(material.law),

@@ -13,7 +13,7 @@ import numpy as np
 from jax import Array
 from numpy.typing import NDArray
 
-import simulearn.compiled  # noqa: F401  (sets JAX up)
+from simulearn.compiled import make_room
 from simulearn.errors import InputError
 from simulearn.learn.aligning import aligned, turned_back
 from simulearn.learn.flat import flat
@@ -52,6 +52,7 @@ class Paper(eqx.Module):
         return answer
 
     def _rollout(self, designs: Designs) -> Frames:
+        make_room()
         count = len(designs)
         first = flat(designs)
         # Numbers of designs are rounded up, so that few shapes are compiled.

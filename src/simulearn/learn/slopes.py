@@ -13,6 +13,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.compiled import make_room
 from simulearn.learn.equilibrium import CONVERGED, Equilibrium
 from simulearn.learn.model import Designs
 from simulearn.learn.shapes import TOLERANCE, Parameters, shapes
@@ -59,6 +60,7 @@ def slopes(
         tolerance: of the last motion of an iteration, mm; costs that are to be compared with each
             other need a tight one.
     """
+    make_room()
     bones = skeletons(designs.beams, designs.fixed, designs.flat)
     kernel = _kernel(model.material, cost, tolerance)
     parameters = model.parameters._replace(stress=None)
