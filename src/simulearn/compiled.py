@@ -42,7 +42,7 @@ class _Made:
 
     kernels = 0
 
-    def __call__(self, event: str, duration: float, **_: object) -> None:
+    def __call__(self, event: str, duration_secs: float, **_: str | int) -> None:
         self.kernels += event == "/jax/core/compile/backend_compile_duration"
 
 
