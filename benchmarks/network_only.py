@@ -24,7 +24,7 @@ from simulearn.learn.stages import Keeper, descend
 from simulearn.learn.truth import Truth, truth
 from simulearn.material import load_material
 from simulearn.mechanics.corners import local_corners, placed
-from simulearn.mechanics.equilibrium import State
+from simulearn.mechanics.forces import State
 from simulearn.mechanics.poses import Array, Pose, exp_so3
 from simulearn.mechanics.rollout import RELEASED, loads, start
 from simulearn.mechanics.section import first_guess

@@ -7,6 +7,7 @@ made anew; where nothing can be written, every run traces for itself.
 """
 
 import hashlib
+import threading
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -37,13 +38,19 @@ class Traced:
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
         self.name, self.function = name, function
         self._calls: dict[Any, Call] = {}
+        self._finding = threading.Lock()
 
     def __call__(self, *args: Any) -> Any:
         """Return what the function returns."""
         leaves, tree = jax.tree.flatten(args)
         shapes = tuple((x.shape, x.dtype) for x in leaves)
         if (tree, shapes) not in self._calls:
-            self._calls[tree, shapes] = self._found(leaves, tree, shapes)
+            with self._finding:  # other threads wait rather than compile the same
+                if (tree, shapes) not in self._calls:
+                    call = self._found(leaves, tree, shapes)
+                    told = call(leaves)
+                    self._calls[tree, shapes] = call
+                    return told
         return self._calls[tree, shapes](leaves)
 
     def _found(self, leaves: list[Any], tree: Any, shapes: Any) -> Call:

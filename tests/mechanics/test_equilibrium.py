@@ -7,21 +7,13 @@ import pytest
 
 from simulearn.grid import Rules, draw_valid
 from simulearn.material import load_material
-from simulearn.mechanics.equilibrium import (
-    Elements,
-    State,
-    _gathered,
-    _pulls,
-    balance,
-    exact_stiffness,
-    halves,
-    iterate,
-    moved,
-)
+from simulearn.mechanics.equilibrium import iterate
+from simulearn.mechanics.forces import Elements, State, forces, halves, moved, twists
 from simulearn.mechanics.poses import Pose, exp_so3
 from simulearn.mechanics.rollout import every_frame, loads, rollout
 from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.skeleton import Skeleton, flat, skeletons
+from simulearn.mechanics.stiffness import exact_stiffness
 
 PLA = load_material("pla-hot-water")
 LOAD = loads(PLA)
@@ -85,14 +77,29 @@ def chain(count, length, stiffness, angle=0.0):
 
 @jax.jit
 def newton(bones, el, state):
-    """One step of Newton's with the exact stiffness; how far the joints would go."""
-    at = balance(bones, el, state)[0]
-    out = jnp.concatenate([at.joints.at[0].set(0.0).ravel(), at.middles.ravel()])
-    step = -jnp.linalg.solve(exact_stiffness(bones, el, state), out)
-    joints = step[: at.joints.size].reshape(-1, 6)
-    way = jnp.abs(joints[:, :3]).max()
-    less = jnp.minimum(1.0, 2.0 / jnp.maximum(way, 1e-9))
-    return moved(state, less * joints, less * step[joints.size :].reshape(-1, 6)), way
+    """One step of Newton's, of 2 mm at most; how far the joints would go.
+
+    Each body moves straight on and turns about itself, which of the ways to count motions is the
+    one by which Newton's steps lead far where pieces are many and short.
+    """
+    count, beams = len(el.weight), bones.ends.shape[1]
+
+    def after(step):
+        go = lambda pose, x: Pose(exp_so3(x[:, 3:]) @ pose.R, pose.p + x[:, :3])  # noqa: E731
+        joints, middles = jnp.split(step, [count])
+        return State(go(state.joints, joints), go(state.middles, middles))
+
+    def out(step):
+        at = after(step.reshape(-1, 6))
+        told = jnp.concatenate(forces(bones, el, at)).at[0].set(step[:6])
+        place = jnp.concatenate([at.joints.p, at.middles.p]).at[0].set(0.0)
+        moment = told[:, 3:] - jnp.cross(place, told[:, :3])
+        return jnp.concatenate([told[:, :3], moment], -1).ravel()
+
+    zero = jnp.zeros(6 * (count + beams))
+    step = -jnp.linalg.solve(jax.jacfwd(out)(zero), out(zero)).reshape(-1, 6)
+    way = jnp.abs(step[:count, :3]).max()
+    return after(jnp.minimum(1.0, 2.0 / jnp.maximum(way, 1e-9)) * step), way
 
 
 def loaded(bones, el, state, steps, lift):
@@ -173,8 +180,6 @@ def test_forces_are_the_slope_of_the_energy(grid):
     state = jax.tree.map(lambda x: x[3], states)
 
     def energy(joints, middles):
-        from simulearn.mechanics.equilibrium import twists
-
         at = moved(state, joints, middles)
         d = twists(bones, el, at)
         here = halves(bones, at)
@@ -187,7 +192,7 @@ def test_forces_are_the_slope_of_the_energy(grid):
 
     zero = jnp.zeros((len(plan.centre), 6)), jnp.zeros((len(ratio), 6))
     slope = jax.grad(energy, (0, 1))(*zero)
-    told = _gathered(bones, el, _pulls(el, halves(bones, state)).forces)
+    told = forces(bones, el, state)
     for a, b in zip(told, slope, strict=True):
         np.testing.assert_allclose(a, b, atol=2e-5 * float(jnp.abs(b).max()))
 
@@ -206,16 +211,16 @@ def test_the_exact_stiffness_is_how_forces_change(grid):
     held = 6 * design.fixed + np.arange(6)
     step[held] = 0
 
-    def forces(scale):
+    def out(scale):
         at = moved(
             state,
             jnp.asarray(scale * step[:count].reshape(-1, 6)),
             jnp.asarray(scale * step[count:].reshape(-1, 6)),
         )
-        joints, middles = _gathered(bones, el, _pulls(el, halves(bones, at)).forces)
+        joints, middles = forces(bones, el, at)
         return np.concatenate([joints.ravel(), middles.ravel()])
 
-    measured = (forces(1.0) - forces(-1.0)) / 2
+    measured = (out(1.0) - out(-1.0)) / 2
     measured[held] = 0
     np.testing.assert_allclose(matrix @ step, measured, atol=1e-4 * abs(measured).max())
 

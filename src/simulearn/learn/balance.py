@@ -15,9 +15,10 @@ from simulearn.learn import local
 from simulearn.learn.shapes import Parameters, corrected, plain
 from simulearn.learn.truth import Truth
 from simulearn.mechanics.corners import local_corners
-from simulearn.mechanics.equilibrium import State, balance, solve
-from simulearn.mechanics.poses import Array
+from simulearn.mechanics.forces import State
+from simulearn.mechanics.poses import Array, Pose
 from simulearn.mechanics.rollout import RELEASED, Loads, elements
+from simulearn.mechanics.stiffness import balance, solve
 
 SMALL = 3e-4  # squared % of dimension, below which errors count by their square
 
@@ -57,13 +58,14 @@ def misses(
     joints, middles = solve(bones, *balance(bones, el, at, share))
     own = local_corners(parameters.law, bones, plan, s, told.face, told.middle)
 
-    def off(turn: Array, step: Array, true: Array, told: Array) -> Array:
-        own = lambda x: jnp.einsum("kij,kcj->kci", turn, x)  # noqa: E731
-        return step[:, None, :3] + jnp.cross(step[:, None, 3:], own(true)) + own(told - true)
+    def off(pose: Pose, step: Array, true: Array, told: Array) -> Array:
+        own = lambda x: jnp.einsum("kij,kcj->kci", pose.R, x)  # noqa: E731
+        place = pose.p[:, None] + own(true)
+        return step[:, None, :3] + jnp.cross(step[:, None, 3:], place) + own(told - true)
 
-    missed = off(at.joints.R, joints, trial.joints[frame], own[0])
+    missed = off(at.joints, joints, trial.joints[frame], own[0])
     missed = missed.at[bones.fixed, :4].set(0.0)  # the held corners
-    return missed, off(at.middles.R, middles, trial.middles[frame], own[1])
+    return missed, off(at.middles, middles, trial.middles[frame], own[1])
 
 
 def loss(joints: Array, middles: Array, size: Array, s: Array) -> Array:

@@ -4,6 +4,7 @@ What they answer is a minimum of the energy of a grid of beams between joints; s
 """
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial
 from typing import Any
@@ -13,6 +14,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.compiled import cores
 from simulearn.errors import InputError
 from simulearn.learn import local, stresses
 from simulearn.learn.model import Designs, Frames, Last
@@ -91,9 +93,11 @@ class Equilibrium:
             told = kernel(some, designs.flat[which], designs.actuators[which])
             return jax.tree.map(np.asarray, told)
 
-        # One after the other: two kernels at once wait for each other for ever where JAX has one
-        # thread.
-        told = [run(which) for which in parts]
+        if len(parts) > 1:
+            with ThreadPoolExecutor(min(cores(), len(parts))) as pool:
+                told = list(pool.map(run, parts))
+        else:
+            told = [run(which) for which in parts]
         return Shapes(*jax.tree.map(lambda *x: np.concatenate(x)[:count], *told))
 
     def config(self) -> dict[str, Any]:

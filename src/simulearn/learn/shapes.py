@@ -5,6 +5,7 @@ rest, stiffness and sections differ; with that the grid is brought into equilibr
 frames at a time. Nothing can come apart, and frame 0 is the design.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax
@@ -13,7 +14,8 @@ import jax.numpy as jnp
 from simulearn.learn import local, stresses
 from simulearn.material import Material
 from simulearn.mechanics.corners import local_corners, placed
-from simulearn.mechanics.equilibrium import Elements, State, settle, twists
+from simulearn.mechanics.equilibrium import settle
+from simulearn.mechanics.forces import Elements, State, twists
 from simulearn.mechanics.poses import Array, Pose, exp_se3
 from simulearn.mechanics.rollout import RELEASED, Loads, every_frame, rollout
 from simulearn.mechanics.section import Law
@@ -80,30 +82,35 @@ def first(
 def resettled(bones: Skeleton, el: Elements, begun: State, tolerance: float) -> tuple[State, Array]:
     """Return the equilibria of corrected elements in all frames (11), and the last motions.
 
-    Each begins where the first shape is, moved on as in the frame before.
+    Each begins where the first shape is, moved on as the two frames before let expect.
     """
 
     def frame(
-        carry: tuple[State, State], now: tuple[Elements, State]
+        moves: tuple[State, State], now: tuple[Elements, State]
     ) -> tuple[tuple[State, State], tuple[State, Array]]:
-        (before, after), (here, first) = carry, now
-        state, way = settle(bones, here, _likewise(before, after, first), tolerance, MOST)
-        return (first, state), (state, way)
+        here, first = now
+        state, way = settle(bones, here, _each(_expected, first, *moves), tolerance, MOST)
+        return (moves[1], _each(_move, first, state)), (state, way)
 
     start = jax.tree.map(lambda x: x[0], begun)
-    return jax.lax.scan(frame, (start, start), (el, begun))[1]
+    none = _each(_move, start, start)
+    return jax.lax.scan(frame, (none, none), (el, begun))[1]
 
 
-def _likewise(before: State, after: State, first: State) -> State:
-    """Return a state moved as another was."""
+def _each(function: Callable[..., Pose], *states: State) -> State:
+    """Return a function of the poses of joints, and of middles."""
+    return State(*(function(*poses) for poses in zip(*states, strict=True)))
 
-    def go(a: Pose, b: Pose, c: Pose) -> Pose:
-        return Pose(b.R @ jnp.swapaxes(a.R, -1, -2) @ c.R, c.p + b.p - a.p)
 
-    return State(
-        go(before.joints, after.joints, first.joints),
-        go(before.middles, after.middles, first.middles),
-    )
+def _move(a: Pose, b: Pose) -> Pose:
+    """Return how poses turn and move from a to b."""
+    return Pose(b.R @ jnp.swapaxes(a.R, -1, -2), b.p - a.p)
+
+
+def _expected(pose: Pose, before: Pose, last: Pose) -> Pose:
+    """Return a pose after the move that would follow two."""
+    turn = last.R @ jnp.swapaxes(before.R, -1, -2) @ last.R
+    return Pose(turn @ pose.R, pose.p + 2 * last.p - before.p)
 
 
 def shapes(

@@ -23,7 +23,7 @@ from simulearn.learn.config import Stage
 from simulearn.learn.shapes import Parameters, elastic, first
 from simulearn.learn.truth import Truth, truth
 from simulearn.material import Material
-from simulearn.mechanics.equilibrium import State
+from simulearn.mechanics.forces import State
 from simulearn.mechanics.poses import Array
 from simulearn.mechanics.rollout import RELEASED, elements, every_frame, loads
 from simulearn.mechanics.section import Law, first_guess

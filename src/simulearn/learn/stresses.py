@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from simulearn.material import Material
-from simulearn.mechanics.equilibrium import FLIP, State
+from simulearn.mechanics.forces import FLIP, State
 from simulearn.mechanics.poses import Array
 from simulearn.mechanics.skeleton import Flat, Skeleton
 

@@ -9,7 +9,7 @@ import numpy as np
 from simulearn.dataset import Batch
 from simulearn.material import Material
 from simulearn.mechanics.corners import poses_of
-from simulearn.mechanics.equilibrium import State
+from simulearn.mechanics.forces import State
 from simulearn.mechanics.poses import Array, Pose
 from simulearn.mechanics.skeleton import Flat, Skeleton, flat, skeletons
 

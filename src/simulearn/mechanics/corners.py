@@ -4,7 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.mechanics.equilibrium import FLIP, State
+from simulearn.mechanics.forces import FLIP, State
 from simulearn.mechanics.poses import Array
 from simulearn.mechanics.section import Law, in_s
 from simulearn.mechanics.skeleton import Flat, Skeleton

@@ -4,12 +4,15 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from simulearn.material import Material
-from simulearn.mechanics.equilibrium import Elements, State, inverse_of_blocks, settle
+from simulearn.mechanics.equilibrium import settle
+from simulearn.mechanics.forces import Elements, State
 from simulearn.mechanics.poses import Array, Pose
-from simulearn.mechanics.section import Law, in_s, rest
+from simulearn.mechanics.section import Law, in_s, rest, tilted
 from simulearn.mechanics.skeleton import Flat, Skeleton
+from simulearn.mechanics.stiffness import inverse_of_blocks
 
 STEPS = 10
 RELEASED = (*(k / STEPS for k in range(1, STEPS + 1)), 1.0)  # frames 1 to 11
@@ -46,13 +49,12 @@ def elements(
     law: Law, bones: Skeleton, plan: Flat, ratio: Array, load: Loads, s: Array, gravity: Array
 ) -> Elements:
     """Return the halves of a grid at a released fraction s and a multiple of gravity."""
-    length = jnp.stack([plan.length] * 2)
-    held = (bones.ends == bones.fixed).astype(length.dtype)
-    free, compliance = rest(law, length, jnp.stack([ratio] * 2), held, s)
+    held = (bones.ends == bones.fixed).astype(plan.length.dtype)
+    free, compliance = rest(law, plan.length, ratio, s)
     body = load.body * gravity
     return Elements(
-        rest=free,
-        stiffness=inverse_of_blocks(compliance),
+        rest=tilted(law, held, s) @ free,
+        stiffness=jnp.stack([inverse_of_blocks(compliance)] * 2),
         face=plan.face * (1 + in_s(law.plane, s)),
         frame=plan.frame,
         length=plan.length / 2,
@@ -87,25 +89,32 @@ def rollout(
     """
 
     def frame(
-        carry: tuple[State, State], now: tuple[Elements, Array]
-    ) -> tuple[tuple[State, State], tuple[State, Array]]:
-        before, last = carry
-        here, fresh = now
-        new, way = settle(bones, here, _onward(before, last, 1 - fresh), tolerance, most)
-        return (last, new), (new, way)
+        path: tuple[State, State, State], now: tuple[Elements, Array]
+    ) -> tuple[tuple[State, State, State], tuple[State, Array]]:
+        here, order = now
+        new, way = settle(bones, here, _onward(*path, order), tolerance, most)
+        return (*path[1:], new), (new, way)
 
     begin = start(plan)
     # No extrapolation over a jump in gravity.
-    fresh = jnp.array([1.0, 1.0] + [0.0] * (len(el.weight) - 3) + [1.0])
-    _, (states, ways) = jax.lax.scan(frame, (begin, begin), (el, fresh))
+    order = np.clip(np.arange(len(el.weight)) - 1, 0, 2)
+    order[-1] = 0
+    _, (states, ways) = jax.lax.scan(frame, (begin, begin, begin), (el, jnp.array(order)))
     return states, ways
 
 
-def _onward(before: State, last: State, share: Array) -> State:
-    """Return a state as far beyond the last as that is from the one before, or a share of it."""
+def _onward(first: State, second: State, third: State, order: Array) -> State:
+    """Return the state after three, by a polynomial of order 0 to 2."""
 
-    def go(a: Pose, b: Pose) -> Pose:
-        turn = b.R @ (jnp.swapaxes(a.R, -1, -2) @ b.R)
-        return Pose(jnp.where(share > 0, turn, b.R), b.p + share * (b.p - a.p))
+    def go(a: Pose, b: Pose, c: Pose) -> Pose:
+        before, last = jnp.swapaxes(a.R, -1, -2) @ b.R, jnp.swapaxes(b.R, -1, -2) @ c.R
+        line = c.R @ last
+        curve = line @ last @ jnp.swapaxes(before, -1, -2)
+        turned = jnp.where(order > 1, curve, jnp.where(order > 0, line, c.R))
+        way = jnp.minimum(order, 1) * (c.p - b.p) + (order > 1) * (c.p - 2 * b.p + a.p)
+        return Pose(turned, c.p + way)
 
-    return State(go(before.joints, last.joints), go(before.middles, last.middles))
+    return State(
+        go(first.joints, second.joints, third.joints),
+        go(first.middles, second.middles, third.middles),
+    )

@@ -68,14 +68,25 @@ def in_s(coefficients: Array, s: Any) -> Array:
     return coefficients[0] * s + coefficients[1] * s * s
 
 
-def rest(law: Law, length: Array, ratio: Array, held: Array, s: Any) -> tuple[Pose, Array]:
+def tilted(law: Law, held: Array, s: Any) -> Pose:
+    """Return how faces lie as seen from where they would if they were not held.
+
+    Args:
+        law: of the section.
+        held: (...) 1 where the half leaves the fixed joint, else 0.
+        s: released fraction.
+    """
+    zero = jnp.zeros_like(held)
+    return exp_se3(jnp.stack([zero, zero, zero, zero, held * in_s(law.tilt, s), zero], -1))
+
+
+def rest(law: Law, length: Array, ratio: Array, s: Any) -> tuple[Pose, Array]:
     """Return how halves lie free of loads, and their compliances there.
 
     Args:
         law: of the section.
         length: (...) net length of the whole beams, mm.
         ratio: (...) signed actuator ratios.
-        held: (...) 1 where the half leaves the fixed joint, else 0.
         s: released fraction.
 
     Returns:
@@ -91,20 +102,19 @@ def rest(law: Law, length: Array, ratio: Array, held: Array, s: Any) -> tuple[Po
     second = jnp.stack(
         [active * (1 + in_s(law.active, s)), zero, zero, zero, -sign * bend * active, zero], -1
     )
-    tilt = jnp.stack([zero, zero, zero, zero, held * in_s(law.tilt, s), zero], -1)
     stiff = law.stiffness[0] + law.stiffness[1] * s + law.stiffness[2] * s * s
     soft = jnp.exp(-jnp.stack([stiff, stiff + law.stiffened[0] + law.stiffened[1] * s]))
     # Both parts, and both Gauss points of each, at once: (2, 2, ..., 6).
     strains = jnp.stack([first, second])
     back = 1 - jnp.array(GAUSS).reshape(2, *[1] * first.ndim)
     inner = exp_se3(strains[:, None] * back)
-    placed, arc, tilted = (exp_se3(x) for x in (first, second, tilt))
+    placed, arc = exp_se3(first), exp_se3(second)
     beyond = jax.tree.map(lambda x: jnp.stack([x, jnp.broadcast_to(_none(x), x.shape)]), arc)
     onward = inner @ jax.tree.map(lambda x: x[:, None], beyond)
     turn = adjoint(onward.inverse)
     weight = jnp.stack([passive, active])[..., None] / 2 * soft.reshape(2, *[1] * zero.ndim, 6)
     compliance = jnp.einsum("pg...ij,p...j,pg...kj->...ik", turn, weight, turn)
-    return tilted @ placed @ arc, compliance
+    return placed @ arc, compliance
 
 
 def _none(x: Array) -> Array:

@@ -1,0 +1,159 @@
+"""Forces of halves of beams between joints, at any poses.
+
+Each half stores d.K.d / 2, d being the twist by which its middle has left its place at rest:
+exact for any rotation, and for the constant strains of the rest itself.
+
+All wrenches and motions are about the origin and in the axes of space (force or translation, then
+moment or rotation), whatever they act on. So the two ends of a half feel the same wrench, with
+opposite signs, and what moves both alike changes nothing.
+"""
+
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+
+from simulearn.mechanics.poses import Array, Pose, exp_se3, inverse_right, log_se3
+from simulearn.mechanics.skeleton import Skeleton
+
+UP = np.array([0.0, 0.0, 1.0])
+# The axes of a beam's middle as its two halves see them.
+FLIP = np.stack([np.eye(3), np.diag([-1.0, -1.0, 1.0])])
+
+
+class State(NamedTuple):
+    """Poses in space; joints (J), middles of beams in the axes of half 0 (B)."""
+
+    joints: Pose
+    middles: Pose
+
+
+class Elements(NamedTuple):
+    """Halves of beams and loads at one released fraction.
+
+    Attributes:
+        rest: (2, B) place of the middle as seen from the face, free of loads.
+        stiffness: (2, B, 6, 6) N, mm.
+        face: (2, B, 3) from the joint's centre to the face, in the joint's axes, mm.
+        frame: (2, B, 3, 3) axes of the half in the joint's.
+        length: (B,) of the halves' mean, for the weight, mm.
+        line: () weight of beams, N/mm.
+        weight: (J,) of joints, N.
+    """
+
+    rest: Pose
+    stiffness: Array
+    face: Array
+    frame: Array
+    length: Array
+    line: Array
+    weight: Array
+
+
+class Halves(NamedTuple):
+    """Poses gathered for each half (2, B): of its joint, and of its middle in its own axes."""
+
+    joint: Pose
+    middle: Pose
+
+
+class Forces(NamedTuple):
+    """Wrenches out of balance, on joints (J, 6) and middles (B, 6)."""
+
+    joints: Array
+    middles: Array
+
+
+class Pulls(NamedTuple):
+    """What the halves (2, B) do to their ends.
+
+    Attributes:
+        wrench: (2, B, 6) elastic, on middles; joints feel the opposite.
+        change: (2, B, 6, 6) how twists change as middles move.
+        lever: (2, B, 3) first moment of the weight that joints carry, N mm.
+    """
+
+    wrench: Array
+    change: Array
+    lever: Array
+
+
+class Hung(NamedTuple):
+    """Weight that bodies carry: its sum (...) N, and its first moment (..., 3) N mm."""
+
+    weight: Array
+    lever: Array
+
+    @property
+    def wrench(self) -> Array:
+        """(..., 6) slope of its energy."""
+        lift = self.weight[..., None] * UP
+        return jnp.concatenate([lift, jnp.cross(self.lever, UP)], -1)
+
+
+def halves(bones: Skeleton, state: State) -> Halves:
+    """Return the poses that each half joins."""
+    joint = Pose(state.joints.R[bones.ends], state.joints.p[bones.ends])
+    return Halves(joint, Pose(state.middles.R @ FLIP[:, None], jnp.stack([state.middles.p] * 2)))
+
+
+def moved(state: State, joints: Array, middles: Array) -> State:
+    """Return a state after motions of joints (J, 6) and middles (B, 6)."""
+    return State(exp_se3(joints) @ state.joints, exp_se3(middles) @ state.middles)
+
+
+def twists(bones: Skeleton, elements: Elements, state: State) -> Array:
+    """Return how far the halves' middles have left their places at rest: (2, B, 6)."""
+    return _twists(elements, halves(bones, state))
+
+
+def _twists(el: Elements, at: Halves) -> Array:
+    seen = (at.joint @ Pose(el.frame, el.face)).inverse @ at.middle
+    return log_se3(el.rest.inverse @ seen)
+
+
+def _change(d: Array, at: Halves) -> Array:
+    """Return how twists change as middles move: (2, B, 6, 6)."""
+    back = jnp.swapaxes(at.middle.R, -1, -2)
+    turn, along = inverse_right(d)
+    turn, along = turn @ back, along @ back
+    along += jnp.cross(at.middle.p[..., None, :], turn)
+    return block(turn, along, jnp.zeros_like(turn), turn)
+
+
+def block(a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Return matrices (..., 6, 6) of four blocks."""
+    return jnp.concatenate([jnp.concatenate([a, b], -1), jnp.concatenate([c, d], -1)], -2)
+
+
+def pulls(el: Elements, at: Halves) -> Pulls:
+    """Return what halves do to their ends."""
+    d = _twists(el, at)
+    change = _change(d, at)
+    wrench = jnp.einsum("hbji,hbj->hbi", change, jnp.einsum("hbij,hbj->hbi", el.stiffness, d))
+    # Weight, as a cubic deflection shares it between the ends; couples on middles cancel.
+    share = (el.length * el.line / 2)[:, None]
+    couple = (el.length**2 * el.line / 12)[:, None]
+    local = share * el.face + couple * el.frame[..., 0]
+    lever = share * at.joint.p + jnp.einsum("hbij,hbj->hbi", at.joint.R, local)
+    return Pulls(wrench, change, lever)
+
+
+def hung(bones: Skeleton, el: Elements, state: State, levers: Array) -> tuple[Hung, Hung]:
+    """Return the weight that joints (J) carry, levers being those of `Pulls`, and middles (B)."""
+    line = el.length * el.line
+    weight = el.weight.at[bones.ends].add(line / 2)
+    lever = (el.weight[:, None] * state.joints.p).at[bones.ends].add(levers)
+    return Hung(weight, lever), Hung(line, line[:, None] * state.middles.p)
+
+
+def gathered(bones: Skeleton, told: Pulls, loads: tuple[Hung, Hung]) -> Forces:
+    """Return the wrenches on joints and middles, given what halves do and what hangs on them."""
+    joints, middles = (load.wrench for load in loads)
+    return Forces(joints.at[bones.ends].add(-told.wrench), middles + told.wrench.sum(0))
+
+
+def forces(bones: Skeleton, el: Elements, state: State) -> Forces:
+    """Return the wrenches out of balance in a state: the slope of its energy."""
+    told = pulls(el, halves(bones, state))
+    return gathered(bones, told, hung(bones, el, state, told.lever))
