@@ -1,6 +1,8 @@
 """Traces kept between runs."""
 
+import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import jax
@@ -75,3 +77,19 @@ def test_where_nothing_can_be_kept_it_is_traced(kept: Path) -> None:
     np.testing.assert_array_equal(Traced("twice", twice)({"a": NUMBERS})[0], 2 * NUMBERS)
     jax.config.update("jax_compilation_cache_dir", None)
     np.testing.assert_array_equal(Traced("twice", twice)({"a": NUMBERS})[0], 2 * NUMBERS)
+
+
+def test_threads_that_ask_at_once_compile_once(kept: Path) -> None:
+    traces = []
+
+    def slow(x: dict[str, jax.Array]) -> jax.Array:
+        traces.append(1)
+        time.sleep(0.3)
+        return 3 * x["a"]
+
+    call = Traced("slow", slow)
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda k: call({"a": NUMBERS + k}), range(4)))
+    assert len(traces) == 1
+    for k, x in enumerate(found):
+        np.testing.assert_array_equal(x, 3 * (NUMBERS + k))

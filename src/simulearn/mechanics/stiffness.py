@@ -71,12 +71,12 @@ def balance(
     six = 6 * jnp.arange(len(el.weight))[:, None] + jnp.arange(6)
     matrix = jnp.zeros((size, size)).at[rows, columns].add(blocks)
     matrix = matrix.at[six[..., None], six[:, None, :]].add(of_joints)
-    root = _cholesky(_with_held(matrix, bones))
+    root = cholesky(_with_held(matrix, bones))
     return gathered(bones, told, loads), Factors(root, soft, follow)
 
 
 @jax.custom_batching.sequential_vmap
-def _cholesky(matrix: Array) -> Array:
+def cholesky(matrix: Array) -> Array:
     """Return the Cholesky factor; of many, one after the other.
 
     JAX 0.10 would share many among threads, which is slower for matrices as small as these, and
