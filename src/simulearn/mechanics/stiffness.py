@@ -75,14 +75,20 @@ def balance(
     return gathered(bones, told, loads), Factors(root, soft, follow)
 
 
-@jax.custom_batching.sequential_vmap
+@jax.custom_jvp
 def cholesky(matrix: Array) -> Array:
     """Return the Cholesky factor; of many, one after the other.
 
     JAX 0.10 would share many among threads, which is slower for matrices as small as these, and
-    two such calls at once wait for each other for ever.
+    two such calls at once wait for each other for ever. Where it is differentiated (in fitting, one
+    call at a time) it is JAX's own.
     """
-    return jnp.linalg.cholesky(matrix)
+    return jax.custom_batching.sequential_vmap(jnp.linalg.cholesky)(matrix)
+
+
+@cholesky.defjvp
+def _cholesky_slope(at: tuple[Array], along: tuple[Array]) -> tuple[Array, Array]:
+    return jax.jvp(jnp.linalg.cholesky, at, along)
 
 
 def solve(bones: Skeleton, forces: Forces, by: Factors) -> tuple[Array, Array]:
