@@ -35,12 +35,12 @@ def designs(count: int) -> Designs:
     )
 
 
-def warm(answer: Callable[[Designs], object], count: int, times: int = 9) -> float:
+def warm(answer: Callable[[Designs], object], count: int) -> float:
     """Return the median seconds of answering so many designs, everything compiled."""
     asked = designs(count)
     answer(asked)
     spent = []
-    for _ in range(times):
+    for _ in range(max(9, 200 // count)):  # what is short is easily disturbed
         begun = time.perf_counter()
         answer(asked)
         spent.append(time.perf_counter() - begun)
@@ -82,8 +82,8 @@ def main() -> None:
     """Measure all models."""
     report = Report("learned_speed", "Speed of the learned models")
     report.say(
-        "2x2 designs; the median of nine, everything compiled; the command is `simulearn simulate "
-        "saddle`, the best of three, kernels kept from before. Beside that, how far the answer to "
+        "2x2 designs; the median of nine (of two hundred single ones), everything compiled; the "
+        "command is `simulearn simulate saddle`, the best of three, kernels kept from before. Beside that, how far the answer to "
         "a turned or mirrored design is from the turned or mirrored answer, and the bundle's size."
     )
     times = []
