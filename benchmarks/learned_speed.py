@@ -83,8 +83,9 @@ def main() -> None:
     report = Report("learned_speed", "Speed of the learned models")
     report.say(
         "2x2 designs; the median of nine (of two hundred single ones), everything compiled; the "
-        "command is `simulearn simulate saddle`, the best of three, kernels kept from before. Beside that, how far the answer to "
-        "a turned or mirrored design is from the turned or mirrored answer, and the bundle's size."
+        "command is `simulearn simulate saddle`, the best of three, kernels kept from before. "
+        "Beside that, how far the answer to a turned or mirrored design is from the turned or "
+        "mirrored answer, and the bundle's size."
     )
     times = []
     for name in shipped():
