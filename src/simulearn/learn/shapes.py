@@ -5,7 +5,6 @@ rest, stiffness and sections differ; with that the grid is brought into equilibr
 frames at a time. Nothing can come apart, and frame 0 is the design.
 """
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import jax
@@ -15,7 +14,7 @@ from simulearn.learn import local, stresses
 from simulearn.material import Material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.equilibrium import settle
-from simulearn.mechanics.forces import Elements, State, twists
+from simulearn.mechanics.forces import Elements, State, each, twists
 from simulearn.mechanics.poses import Array, Pose, exp_se3
 from simulearn.mechanics.rollout import RELEASED, Loads, every_frame, rollout
 from simulearn.mechanics.section import Law
@@ -89,17 +88,12 @@ def resettled(bones: Skeleton, el: Elements, begun: State, tolerance: float) -> 
         moves: tuple[State, State], now: tuple[Elements, State]
     ) -> tuple[tuple[State, State], tuple[State, Array]]:
         here, first = now
-        state, way = settle(bones, here, _each(_expected, first, *moves), tolerance, MOST)
-        return (moves[1], _each(_move, first, state)), (state, way)
+        state, way = settle(bones, here, each(_expected, first, *moves), tolerance, MOST)
+        return (moves[1], each(_move, first, state)), (state, way)
 
     start = jax.tree.map(lambda x: x[0], begun)
-    none = _each(_move, start, start)
+    none = each(_move, start, start)
     return jax.lax.scan(frame, (none, none), (el, begun))[1]
-
-
-def _each(function: Callable[..., Pose], *states: State) -> State:
-    """Return a function of the poses of joints, and of middles."""
-    return State(*(function(*poses) for poses in zip(*states, strict=True)))
 
 
 def _move(a: Pose, b: Pose) -> Pose:

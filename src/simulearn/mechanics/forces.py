@@ -8,6 +8,7 @@ moment or rotation), whatever they act on. So the two ends of a half feel the sa
 opposite signs, and what moves both alike changes nothing.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -89,6 +90,11 @@ class Hung(NamedTuple):
         """(..., 6) slope of its energy."""
         lift = self.weight[..., None] * UP
         return jnp.concatenate([lift, jnp.cross(self.lever, UP)], -1)
+
+
+def each(function: Callable[..., Pose], *states: State) -> State:
+    """Return a function of the poses of joints, and of middles."""
+    return State(*(function(*poses) for poses in zip(*states, strict=True)))
 
 
 def halves(bones: Skeleton, state: State) -> Halves:

@@ -8,7 +8,7 @@ import numpy as np
 
 from simulearn.material import Material
 from simulearn.mechanics.equilibrium import settle
-from simulearn.mechanics.forces import Elements, State
+from simulearn.mechanics.forces import Elements, State, each
 from simulearn.mechanics.poses import Array, Pose
 from simulearn.mechanics.section import Law, in_s, rest, tilted
 from simulearn.mechanics.skeleton import Flat, Skeleton
@@ -114,7 +114,4 @@ def _onward(first: State, second: State, third: State, order: Array) -> State:
         way = jnp.minimum(order, 1) * (c.p - b.p) + (order > 1) * (c.p - 2 * b.p + a.p)
         return Pose(turned, c.p + way)
 
-    return State(
-        go(first.joints, second.joints, third.joints),
-        go(first.middles, second.middles, third.middles),
-    )
+    return each(go, first, second, third)

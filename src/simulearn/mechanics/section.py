@@ -90,8 +90,8 @@ def rest(law: Law, length: Array, ratio: Array, s: Any) -> tuple[Pose, Array]:
         s: released fraction.
 
     Returns:
-        Pose of the middle as seen from the face; compliance (..., 6, 6): how far the middle moves
-        (a twist there) under a wrench there, (mm, rad) per (N, N mm).
+        Pose of the middle as seen from the face, where that is not held; compliance (..., 6, 6):
+        how far the middle moves (a twist there) under a wrench there, (mm, rad) per (N, N mm).
     """
     size, sign = jnp.abs(ratio), jnp.sign(ratio)
     passive, active = (1 - size) / 2 * length, size / 2 * length

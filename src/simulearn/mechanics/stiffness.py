@@ -79,8 +79,8 @@ def balance(
 def cholesky(matrix: Array) -> Array:
     """Return the Cholesky factor; of many, one after the other.
 
-    JAX 0.10 would share many among threads, which is slower for matrices as small as these, and
-    two such calls at once wait for each other for ever. Where it is differentiated (in fitting, one
+    JAX 0.10 would share many among threads, and two such calls at once wait for each other for
+    ever. Where it is differentiated (in fitting, one
     call at a time) it is JAX's own.
     """
     return jax.custom_batching.sequential_vmap(jnp.linalg.cholesky)(matrix)
