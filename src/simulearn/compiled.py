@@ -5,29 +5,22 @@ simulation on a machine waits for the compiler; JAX_COMPILATION_CACHE_DIR names 
 """
 
 import os
-import sys
 from pathlib import Path
 
 import jax
 import jax.monitoring
 
+from simulearn.files import cache_folder
+
 MAPS = 30_000  # memory maps; Linux grants a process 65,530
 AFTER = 20  # kernels made since the last count, before maps are counted again
 
 
-def cache_folder() -> Path:
-    """Return the folder for what can be computed again, by the custom of the platform."""
-    if sys.platform == "win32":
-        base = os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "simulearn"
-
-
 def _keep_kernels() -> None:
-    folder = cache_folder() / "compiled"
+    base = cache_folder()
+    if base is None:
+        return
+    folder = base / "compiled"
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -35,13 +28,6 @@ def _keep_kernels() -> None:
     if os.access(folder, os.W_OK):  # else every run compiles for itself
         jax.config.update("jax_compilation_cache_dir", str(folder))
         jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
-
-
-def cores() -> int:
-    """Return how many processors this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 class _Made:

@@ -1,16 +1,37 @@
-"""Reading and writing files so that a reader never meets half of one.
+"""Reading and writing files so that a reader never meets half of one, and what the machine has.
 
 A file is written beside its final place under a temporary name and then renamed, which the
 operating system does in one step: whoever opens the final name sees the old file or the new one.
 """
 
 import os
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import platformdirs
+
 from simulearn.errors import InputError
+
+
+def cache_folder() -> Path | None:
+    """Return the folder for what can be computed again, by the custom of the platform.
+
+    None where there is no such folder, as for a user without a home.
+    """
+    path = Path(platformdirs.user_cache_dir("simulearn", appauthor=False))
+    return path if path.is_absolute() else None
+
+
+def cores() -> int:
+    """Return how many processors this process may use."""
+    if sys.version_info >= (3, 13):
+        return os.process_cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 @contextmanager

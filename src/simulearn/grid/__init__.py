@@ -1,5 +1,6 @@
 """The grid that a designer draws: its type, outline, rules, file and library."""
 
+from simulearn.errors import Message
 from simulearn.grid.cleaning import clean
 from simulearn.grid.designs import Rules, draw, draw_valid
 from simulearn.grid.grid import Grid
@@ -8,7 +9,6 @@ from simulearn.grid.lattice import drop_beams, lattice
 from simulearn.grid.library import library, make
 from simulearn.grid.outline import JointOutline, Outline, beams_at, joint_outline, outline
 from simulearn.grid.sketch import sketch
-from simulearn.grid.structure import Message
 from simulearn.grid.validation import TrainingRange, Validation, validate
 
 __all__ = [

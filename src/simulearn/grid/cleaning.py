@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.grid.grid import Grid
-from simulearn.grid.structure import Message
 
 
 def kept(grid: Grid) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

@@ -4,29 +4,13 @@ The file reader and validation both ask here; the messages name the file's keys,
 memory has the same ones.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from simulearn.errors import Message
 from simulearn.grid.grid import Grid
 
 # Far beyond any printer; keeps squares and products of coordinates from overflowing (mm).
 FARTHEST = 1e5
-
-
-@dataclass(frozen=True)
-class Message:
-    """Something to tell about a design.
-
-    Attributes:
-        code: short name of the rule, for machines.
-        where: "joint 3", "beam 7" or "grid".
-        message: what is wrong, and what would be right.
-    """
-
-    code: str
-    where: str
-    message: str
 
 
 def structure_errors(grid: Grid) -> list[Message]:

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.grid.cleaning import fixed_removed, kept, removals
 from simulearn.grid.grid import Grid
 from simulearn.grid.outline import JointOutline, beams_at, joint_outline
 from simulearn.grid.overlap import overlaps
-from simulearn.grid.structure import Message, structure_errors
+from simulearn.grid.structure import structure_errors
 from simulearn.material import Material
 from simulearn.material.material import Limits
 

@@ -14,8 +14,8 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.compiled import cores
 from simulearn.errors import InputError
+from simulearn.files import cores
 from simulearn.learn import local, stresses
 from simulearn.learn.model import Designs, Frames, Last
 from simulearn.learn.shapes import Parameters, Shapes, shapes

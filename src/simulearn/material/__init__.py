@@ -2,11 +2,22 @@
 
 from simulearn.material.material import (
     ElasticData,
+    Identity,
     MarlowData,
     Material,
     Section,
     load_material,
     names,
+    read_material,
 )
 
-__all__ = ["ElasticData", "MarlowData", "Material", "Section", "load_material", "names"]
+__all__ = [
+    "ElasticData",
+    "Identity",
+    "MarlowData",
+    "Material",
+    "Section",
+    "load_material",
+    "names",
+    "read_material",
+]

@@ -4,9 +4,12 @@ One TOML file holds the section of the beams, the constitutive law, the shrinkag
 and print settings. Nothing of it is repeated in code: another file is another material system.
 """
 
+import hashlib
+import json
 import tomllib
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -17,7 +20,7 @@ HERE = Path(__file__).parent
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Poisson = Annotated[float, Field(gt=-1, lt=0.5)]
+Poisson = Annotated[float, Field(gt=-1, le=0.49)]  # beyond, the bricks lock
 
 
 class _Data(BaseModel):
@@ -65,8 +68,8 @@ class ElasticData(_Data):
 class Shrinkage(_Data):
     """Released strains of active half and shell, and the printed-in stresses, MPa."""
 
-    active: NotNegative
-    shell: NotNegative
+    active: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
+    shell: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
     stress_active: Positive
     stress_passive: NotNegative
     stress_joint: NotNegative
@@ -154,8 +157,18 @@ class Limits(_Data):
     actuator_length: Positive
 
 
+class Identity(_Data):
+    """What a material, model or data set is called, and the digest of its contents."""
+
+    name: str
+    digest: str
+
+    def __str__(self) -> str:
+        return f"{self.name} ({self.digest[:12]})"
+
+
 class Material(_Data):
-    """A material system."""
+    """A material system; `digest` tells whether two are the same, names are for people."""
 
     name: str
     title: str
@@ -169,10 +182,39 @@ class Material(_Data):
     print: Print
     limits: Limits
 
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of everything but name and title."""
+        return _digest(self.model_dump(mode="json", exclude={"name", "title"}))
+
+    @cached_property
+    def physics(self) -> str:
+        """SHA-256 of what a simulation depends on: section, law, shrinkage, gravity and creep."""
+        return _digest(
+            self.model_dump(
+                mode="json", include={"section", "law", "shrinkage", "gravity", "creep"}
+            )
+        )
+
+    @property
+    def identity(self) -> Identity:
+        """Name and digest."""
+        return Identity(name=self.name, digest=self.digest)
+
+
+def _digest(contents: dict[str, Any]) -> str:
+    text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
 
 def names() -> list[str]:
     """Return the names of the material systems that come with SimuLearn."""
     return sorted(path.stem for path in HERE.glob("*.toml"))
+
+
+def is_name(text: str) -> bool:
+    """Return whether a text can be the name of a material system, and not a path."""
+    return not text.lower().endswith(".toml") and not set(text) & set("/\\:")
 
 
 def load_material(name: str | Path) -> Material:
@@ -181,19 +223,35 @@ def load_material(name: str | Path) -> Material:
     Raises:
         InputError: the name is unknown, or the file is not a valid material system.
     """
-    path = Path(name)
-    if path.suffix != ".toml":
-        if str(name) not in names():
-            known = ", ".join(names())
-            raise InputError(
-                f'material "{name}" is not known; known are {known}, or give a .toml file'
-            )
-        path = HERE / f"{name}.toml"
+    if not is_name(str(name)):
+        return read_material(name)
+    if str(name) not in names():
+        known = ", ".join(names())
+        raise InputError(
+            f'material "{name}" is not known; known are {known}, or give a .toml file',
+            code="material-unknown",
+            where="material",
+        )
+    return read_material(HERE / f"{name}.toml")
+
+
+def read_material(path: str | Path) -> Material:
+    """Return the material system in a TOML file.
+
+    Raises:
+        InputError: the file cannot be read or is not a valid material system.
+    """
+    return _parsed(read_text(path), str(path))
+
+
+@lru_cache(maxsize=64)
+def _parsed(text: str, path: str) -> Material:
+    """Return the material system of a text; the same text is parsed once."""
     try:
-        return Material.model_validate(tomllib.loads(read_text(path)))
+        return Material.model_validate(tomllib.loads(text))
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: is not valid TOML: {error}") from error
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"{path}: {where}: {first['msg']}") from error
+        raise InputError(f"{path}: {where}: {first['msg']}", where=where) from error

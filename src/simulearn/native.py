@@ -1,0 +1,87 @@
+"""Native kernels: loops that Numba compiles once on a machine, for every topology alike.
+
+A kernel is compiled at its first call and kept in the user's cache folder. Kernels of one source
+folder call only each other, so what they do follows from that folder: its digest, with the versions
+of the compiler, names the folder in which they are kept. Nothing of the host process is changed.
+"""
+
+import hashlib
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core import event
+
+from simulearn.files import cache_folder
+
+_decorating = threading.Lock()
+_settings: Any = numba.config
+
+
+def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Return a decorator that compiles a function; it runs without the interpreter's lock.
+
+    Args:
+        entry: whether Python calls it. Entries are kept on disk; what only other kernels call is
+            compiled into them.
+        options: further options of `numba.njit`.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        compile_ = numba.njit(nogil=True, error_model="numpy", **options)(function)
+        kept_in = _folder(Path(function.__code__.co_filename).parent) if entry else None
+        if kept_in is not None:
+            with _decorating:  # Numba asks a setting of the whole process for the folder
+                before = _settings.CACHE_DIR
+                _settings.CACHE_DIR = str(kept_in)
+                try:
+                    compile_.enable_caching()
+                except (RuntimeError, OSError):
+                    pass  # the folder cannot be written: every process compiles for itself
+                finally:
+                    _settings.CACHE_DIR = before
+        return compile_
+
+    return decorate
+
+
+@contextmanager
+def on_compile(tell: Callable[[], None]) -> Iterator[None]:
+    """Call `tell` once, when a kernel has to be compiled while the context lasts."""
+    listener = _Listener(tell)
+    with event.install_listener("numba:compile", listener):
+        yield
+
+
+class _Listener(event.Listener):
+    """Tells of the first compilation only."""
+
+    def __init__(self, tell: Callable[[], None]) -> None:
+        self._tell: Callable[[], None] | None = tell
+
+    def on_start(self, event: Any) -> None:
+        tell, self._tell = self._tell, None
+        if tell is not None:
+            tell()
+
+    def on_end(self, event: Any) -> None:
+        pass
+
+
+@cache
+def _folder(source: Path) -> Path | None:
+    """Return the folder that keeps the kernels of a source folder, or None where there is none."""
+    base = cache_folder()
+    if base is None:
+        return None
+    versions = f"{numba.__version__} {llvmlite.__version__} {np.__version__}"
+    digest = hashlib.sha256(versions.encode())
+    for file in sorted(source.glob("*.py")):
+        digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
+    return base / "native" / digest.hexdigest()[:16]
