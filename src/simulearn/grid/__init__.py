@@ -7,26 +7,25 @@ from simulearn.grid.grid import Grid
 from simulearn.grid.gridfile import grid_from_dict, grid_to_dict, read_grid, write_grid
 from simulearn.grid.lattice import drop_beams, lattice
 from simulearn.grid.library import library, make
-from simulearn.grid.outline import JointOutline, Outline, beams_at, joint_outline, outline
+from simulearn.grid.outline import CornerTopology, Outline, corner_topology, outline
 from simulearn.grid.sketch import sketch
 from simulearn.grid.validation import TrainingRange, Validation, validate
 
 __all__ = [
+    "CornerTopology",
     "Grid",
-    "JointOutline",
     "Message",
     "Outline",
     "Rules",
     "TrainingRange",
     "Validation",
-    "beams_at",
     "clean",
+    "corner_topology",
     "draw",
     "draw_valid",
     "drop_beams",
     "grid_from_dict",
     "grid_to_dict",
-    "joint_outline",
     "lattice",
     "library",
     "make",

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import InputError, Message
+from simulearn.errors import Message
 from simulearn.grid.cleaning import fixed_removed, kept, removals
 from simulearn.grid.grid import Grid
-from simulearn.grid.outline import JointOutline, beams_at, joint_outline
+from simulearn.grid.outline import outlines
 from simulearn.grid.overlap import overlaps
 from simulearn.grid.structure import structure_errors
 from simulearn.material import Material
@@ -92,21 +92,14 @@ def validate(
     joints, beams = kept(grid)
     errors = list(_layout(grid, joints, beams))
     in_place = all(error.code != "joints-coincide" for error in errors)
-    shapes: dict[int, JointOutline] = {}
-    for k, meeting in enumerate(beams_at(grid)):
-        staying = [end for end in meeting if beams[end[0]]]
-        if not staying:
-            continue
-        try:
-            shapes[k] = joint_outline(grid, material.section, k, staying)
-        except InputError as error:
-            code = "joint-valence" if len(staying) > 4 else "joint-outline"
-            errors.append(Message(code, f"joint {k}", str(error)))
-    quads = {
-        b: np.array([shapes[i].face((b, 0)), shapes[j].face((b, 1))])
-        for b, (i, j) in enumerate(grid.beams.tolist())
-        if beams[b] and i in shapes and j in shapes
-    }
+    shape = outlines(grid.beams, grid.joints[None], material.section.width, beams)
+    sound = shape.sound[0]
+    for k in np.flatnonzero(joints & ~sound).tolist():
+        code = "joint-valence" if shape.valence[k] > 4 else "joint-outline"
+        errors.append(Message(code, f"joint {k}", shape.fault(0, k)))
+    shapes = {k: shape.joints[0, k] for k in np.flatnonzero(sound).tolist()}
+    with_ends = beams & sound[grid.beams].all(axis=1)
+    quads = {b: shape.beams[0, b] for b in np.flatnonzero(with_ends).tolist()}
     lengths = {b: _lengths(grid, b, quad) for b, quad in quads.items()}
     warnings = removals(grid)
     for b, measures in lengths.items():
@@ -224,13 +217,13 @@ def _beam_warnings(
 
 
 def _collisions(
-    shapes: dict[int, JointOutline], quads: dict[int, NDArray[np.float64]]
+    shapes: dict[int, NDArray[np.float64]], quads: dict[int, NDArray[np.float64]]
 ) -> Iterator[Message]:
     """Yield an error for each two parts of the outline that overlap."""
     names = [f"joint {k}" for k in shapes] + [f"beam {b}" for b in quads]
     # Counter-clockwise: start right, end right, end left, start left.
     around = [quad[[0, 1, 1, 0], [0, 0, 1, 1]] for quad in quads.values()]
-    pieces = np.array([*(shape.corners for shape in shapes.values()), *around])
+    pieces = np.array([*shapes.values(), *around])
     for a, b in overlaps(pieces.reshape(-1, 4, 2)).tolist():
         yield Message(
             "overlap",
