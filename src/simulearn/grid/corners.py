@@ -17,11 +17,15 @@ from simulearn.errors import InputError
 
 Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Vectors = NDArray[np.complex128]  # of the plane, x + i y
 
 # Angles closer than this are equal: far above rounding, far below what anyone draws (radians).
 TIE = 1e-9
 TURN = 2 * np.pi
+CORNER = np.arange(4)
 NEXT = np.array([1, 2, 3, 0])
+NEXT_NUMBER = np.arange(1, 5)
+LAST = np.iinfo(np.int64).max
 
 
 class CornerTopology(NamedTuple):
@@ -106,90 +110,95 @@ def halves_at_joints(
     return meeting, valence
 
 
-def directions(beams: Indices, joints: Numbers) -> Numbers:
-    """Return the vectors (T, 2 B, 2), mm, from the joint of each half-beam to the other one."""
-    start, end = joints[:, beams[:, 0]], joints[:, beams[:, 1]]
+def directions(beams: Indices, joints: Numbers) -> Vectors:
+    """Return the vectors (T, 2 B), mm, from the joint of each half-beam to the other one.
+
+    Args:
+        beams: (B, 2) joint indices.
+        joints: (T, J, 2) mm.
+
+    Returns:
+        Complex numbers x + i y.
+    """
+    place = np.ascontiguousarray(joints).view(np.complex128)[..., 0]
+    start, end = place.take(beams.T, axis=1).swapaxes(0, 1)
     # Both are differences, since the negative of 0.0 has another angle.
     return np.concatenate([end - start, start - end], axis=1)
 
 
-def corners(meeting: Indices, valence: Indices, direction: Numbers, beams: int) -> Corners:
+def corners(meeting: Indices, valence: Indices, direction: Vectors, beams: int) -> Corners:
     """Return the corners of all joints.
 
     Args:
         meeting: (J, 4) half-beams at each joint, as `halves_at_joints` gives them.
         valence: (J,) how many they are. Where they are none or more than four, the corners of
             that joint mean nothing.
-        direction: (T, 2 B, 2) mm, as `directions` gives them.
+        direction: (T, 2 B) mm, as `directions` gives them.
         beams: B.
     """
     trials, count = len(direction), len(meeting)
-    valence = valence.clip(1, 4)
-    empty = np.arange(4) >= valence[:, None]
-    joint = np.arange(count)
-    row = np.arange(trials * count).reshape(trials, count, 1) * 4
-
-    def pick(values: NDArray, at: Indices) -> NDArray:
-        return values.ravel()[row + at]
+    valence = valence.clip(1, 4)[:, None]
+    empty = valence <= CORNER
+    row = np.arange(0, trials * count * 4, 4).reshape(trials, count, 1)
 
     # One more, in the place -1, stands for no half-beam: it comes last in every order.
     angles = np.full((trials, 2 * beams + 1), np.inf)
-    np.arctan2(direction[..., 1], direction[..., 0], out=angles[:, :-1])
+    np.arctan2(direction.imag, direction.real, out=angles[:, :-1])
     angle = angles[:, meeting]  # (T, J, 4)
     by_angle = angle.argsort(axis=2, kind="stable")
-    order = meeting.ravel()[by_angle + joint[:, None] * 4]
-    angle = np.where(order < 0, 0.0, pick(angle, by_angle))
-    following = np.where(valence[:, None] > NEXT, NEXT, 0)  # the first follows the last
-    gap = angle[:, joint[:, None], following] - angle
-    gap[:, joint, valence - 1] += TURN
-    beam = order % max(beams, 1)
-    beam_after = beam[:, joint[:, None], following]
-    between = np.minimum(beam, beam_after) * beams + np.maximum(beam, beam_after)
-    parts = _parts(gap, between, valence, beams)
+    order = meeting.take(by_angle + row[0])
+    angle = np.where(order < 0, 0.0, angle.take(by_angle + row))
+    following = np.where(valence > NEXT, NEXT, 0) + row  # the first follows the last
+    after = order.take(following)
+    gap = angle.take(following) - angle
+    gap += TURN * (valence == NEXT_NUMBER)
+    parts = _parts(np.where(empty, -1.0, gap), order, after, valence, beams)
 
     behind = parts.cumsum(axis=2)
-    corner = np.arange(4)
-    slot = (behind[:, :, None] <= corner[:, None]).sum(axis=3)  # of the beam before each corner
-    divided = pick(parts, slot)
-    part = corner - (pick(behind, slot) - divided)
-    opening = pick(gap, slot) / divided
-    bisector = pick(angle, slot) + opening * (part + 0.5)
+    # Index of the beam before each corner.
+    before = (behind[:, :, None] <= CORNER[:, None]).sum(axis=3) + row
+    divided = parts.take(before)
+    part = CORNER - behind.take(before) + divided
+    opening = gap.take(before) / divided
+    bisector = angle.take(before) + opening * (part + 0.5)
     first = ((bisector + TIE) % TURN).argmin(axis=2)[..., None]
-    roll = (corner + first) % 4
-    slot = pick(slot, roll)
+    rolled = (CORNER + first) % 4 + row
+    before = before.take(rolled)
     side = np.zeros((trials, 2 * beams + 1), np.int64)
     side[np.arange(trials)[:, None, None], order] = (behind - parts - 1 - first) % 4
     topology = CornerTopology(
-        before=pick(order, slot),
-        after=pick(order, following[joint[:, None], slot]),
-        parts=pick(divided, roll),
-        part=pick(part, roll),
+        before=order.take(before),
+        after=after.take(before),
+        parts=divided.take(rolled),
+        part=part.take(rolled),
         side=side[:, :-1].reshape(trials, 2, beams),
     )
     ties = (gap < TIE) & ~empty
-    return Corners(topology, pick(bisector, roll), pick(opening, roll), order, ties)
+    return Corners(topology, bisector.take(rolled), opening.take(rolled), order, ties)
 
 
-def _parts(gap: Numbers, between: Indices, valence: Indices, beams: int) -> Indices:
+def _parts(gap: Numbers, order: Indices, after: Indices, valence: Indices, beams: int) -> Indices:
     """Return into how many parts (T, J, 4) each gap is divided, four in all at each joint.
 
     Equal parts: the gap in fewer parts first, then the one between the beams first in number.
     Neither depends on how the grid is turned or mirrored.
 
     Args:
-        gap: (T, J, 4) radians, from each beam to the next.
-        between: (T, J, 4) rank of the two beams.
-        valence: (J,) number of gaps, 1 to 4.
+        gap: (T, J, 4) radians, from each beam to the next; -1 fills up.
+        order: (T, J, 4) half-beams before the gaps.
+        after: (T, J, 4) half-beams after them.
+        valence: (J, 1) number of gaps, 1 to 4.
         beams: B.
     """
-    trial = np.arange(len(gap))[:, None]
-    empty = np.arange(4) >= valence[:, None]
-    parts = np.where(empty, 0, np.ones(gap.shape, np.int64))
-    for total in range(valence.min(initial=4), 4):
-        joint = np.flatnonzero(valence <= total)
-        divided = parts[:, joint]
-        each = np.where(empty[joint], -1.0, gap[:, joint] / np.maximum(divided, 1))
+    parts = np.ones(gap.shape, np.int64)
+    least = valence.min(initial=4)
+    if least < 4:
+        two = order % beams, after % beams
+        between = np.minimum(*two) * beams + np.maximum(*two)
+    for total in range(least, 4):
+        each = gap / parts
         ties = each >= each.max(axis=2, keepdims=True) - TIE
-        rank = np.where(ties, divided * beams**2 + between[:, joint], np.iinfo(np.int64).max)
-        parts[trial, joint, rank.argmin(axis=2)] += 1
-    return parts
+        rank = np.where(ties, parts * beams**2 + between, LAST)
+        chosen = rank.argmin(axis=2)[..., None] == CORNER
+        parts += chosen & (valence <= total)
+    return np.where(gap < 0, 0, parts)

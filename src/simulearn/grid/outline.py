@@ -32,6 +32,9 @@ SHARPEST = 15.0
 BLUNTEST = 180.0 - SHARPEST
 
 LAST = np.array([3, 0, 1, 2])
+# A beam's corners from the side that it meets, [start, end] x [right, left]: a half-beam leaves
+# with the side's first corner to its right; at a beam's end that looks back along the beam.
+FACES = np.array([[0, 1], [1, 0]])
 
 
 @dataclass(frozen=True)
@@ -137,27 +140,23 @@ def outlines(
     at = corners(meeting, valence, direction, len(beams))
     with np.errstate(divide="ignore", invalid="ignore"):  # where two beams leave in one direction
         reach = width / 2 / np.sin(at.opening / 2)
-        corner = np.stack([reach * np.cos(at.bisector), reach * np.sin(at.bisector)], axis=-1)
-        back, on = corner[:, :, LAST] - corner, corner[:, :, NEXT] - corner
-        turn = on[..., 0] * back[..., 1] - on[..., 1] * back[..., 0]
-        inside = np.degrees(np.arctan2(turn, (on * back).sum(axis=-1)))
-        corner += joints[:, :, None]
+        corner = reach * np.exp(1j * at.bisector)  # x + i y, seen from the joint
+        turn = (corner[..., LAST] - corner) * np.conj(corner[..., NEXT] - corner)
+        inside = np.degrees(np.arctan2(turn.imag, turn.real))
+    place = corner.view(np.float64).reshape(trials, count, 4, 2) + joints[:, :, None]
     point = np.zeros((trials, 2 * len(beams) + 1), bool)
-    point[:, :-1] = (direction == 0).all(axis=-1)
+    np.equal(direction, 0, out=point[:, :-1])
     points = point[:, meeting]
-    many = (valence < 1) | (valence > 4)
-    sound = ~(many | (points | at.ties | _unsound(inside)).any(axis=-1))
+    sound = ~(points | at.ties | _unsound(inside)).any(axis=-1)
+    sound &= (valence > 0) & (valence < 5)
 
-    sides = np.moveaxis(at.topology.side, 1, 2)
-    first = (np.arange(trials)[:, None, None] * count + beams) * 4
-    places = corner.reshape(-1, 2)
-    faces = np.stack([places[first + sides], places[first + NEXT[sides]]], axis=3)
-    # Right and left as the half-beam leaves its joint; at a beam's end that looks back along it.
-    faces[:, :, 1] = faces[:, :, 1, ::-1]
+    sides = at.topology.side.swapaxes(1, 2)
+    joint = np.arange(0, trials * count, count)[:, None, None] + beams
+    faces = (sides[..., None] + FACES) % 4 + 4 * joint[..., None]
     return Outlines(
-        joints=corner,
+        joints=place,
         sides=sides,
-        beams=faces,
+        beams=place.reshape(-1, 2).take(faces, axis=0),
         sound=sound,
         ends=beams,
         meeting=meeting,
