@@ -193,7 +193,7 @@ def _parts(gap: Numbers, order: Indices, after: Indices, valence: Indices, beams
     parts = np.ones(gap.shape, np.int64)
     least = valence.min(initial=4)
     if least < 4:
-        two = order % beams, after % beams
+        two = order % max(beams, 1), after % max(beams, 1)
         between = np.minimum(*two) * beams + np.maximum(*two)
     for total in range(least, 4):
         each = gap / parts
