@@ -16,8 +16,6 @@ from typing import NamedTuple
 import jax
 import jax.numpy as jnp
 
-import simulearn.compiled  # noqa: F401  double precision, before any array is made
-
 Array = jax.Array
 
 TERMS = 9  # of the series of sine and cosine: exact to 1e-9 up to two radians
