@@ -17,8 +17,8 @@ from simulearn.native import native
 Array = Any
 NEAR, BEYOND = 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)  # Gauss points
 # Where the section's coefficients lie in one array; each is that of s, then that of s2.
-ACTIVE, PASSIVE, CURVATURE, SHORT, TILT, PLANE, THICKNESS, ACROSS, UP = 0, 2, 4, 6, 7, 9, 11, 13, 15
-STIFFNESS, STIFFENED, COEFFICIENTS = 17, 35, 47
+ACTIVE, PASSIVE, CURVATURE, SHORT, TILT = np.array([0, 2, 4, 6, 7])
+PLANE, THICKNESS, ACROSS, UP, STIFFNESS, STIFFENED = np.array([9, 11, 13, 15, 17, 35])
 
 
 @native(entry=False)

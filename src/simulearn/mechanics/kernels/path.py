@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from simulearn.mechanics.kernels.assembly import Weights
-from simulearn.mechanics.kernels.elements import THICKNESS, quadratic, set_elements
+from simulearn.mechanics.kernels.elements import PLANE, quadratic, set_elements
 from simulearn.mechanics.kernels.equilibrium import make_space, solve
 from simulearn.mechanics.kernels.rotations import (
     inverse_left,
@@ -20,21 +20,6 @@ Array = Any
 
 # What is said of each frame.
 MOTION, NEGATIVE, WIDEST, FACTORS, STEPS, ASTRAY, MOVED, INFO = range(8)
-
-
-class Plan(NamedTuple):
-    """The flat grid in numbers; see `mechanics.skeleton`."""
-
-    centre: Array
-    corners: Array
-    area: Array
-    face: Array
-    frame: Array
-    reach: Array
-    skew: Array
-    length: Array
-    middle: Array
-    section: Array
 
 
 class Frames(NamedTuple):
@@ -66,7 +51,7 @@ def set_weights(
         weights.joint_volume[j] = thick * plan.area[j]
         for k in range(3):
             weights.lever[j, k] = 0.0
-    plane = 1 + quadratic(section, 9, s)
+    plane = 1 + quadratic(section, PLANE, s)
     for b in range(len(plan.length)):
         half = plan.length[b] / 2
         line = body * area
@@ -168,7 +153,7 @@ def furthest(a: Array, b: Array) -> float:
 @native()
 def follow(
     layout: Any, plan: Any, section: Array, load: Array, ratio: Array, frames: Any,
-    guide_R: Array, guide_p: Array, guided: bool, begin: int, begun_near: bool, descend: bool,
+    guide_R: Array, guide_p: Array, guided: Array, begin: int, begun_near: bool, descend: bool,
     shove: float,
     tolerance: float, most: int, far: Array, R: Array, p: Array, info: Array, twists: Array,
 ) -> int:  # fmt: skip
@@ -182,18 +167,17 @@ def follow(
         ratio: (B,) signed actuator ratios.
         frames: what acts in each.
         guide_R, guide_p: (F, N, 9), (F, N, 3) poses near which those are expected.
-        guided: whether they are given.
+        guided: (F,) whether they are given for a frame and the two before.
         begin: first frame to find.
         begun_near: whether the frame before is near the first.
         descend: whether to descend from the frame before.
         shove: how far to go along the softest mode first, mm.
         tolerance: of the last motion, mm.
         most: factorisations in a frame.
-        far: (2,) distance from where a frame is expected that is not plain: in mm, and as a
-            share of the motion since the frame before; the larger counts.
+        far: (F,) distance from where a frame is expected that is not plain, mm.
         R, p: (F, N, 9), (F, N, 3) poses of joints and middles: frame 0 is given.
         info: (F, INFO) to set.
-        twists: (F, 2, B, 6) to set: how far halves are from their rest.
+        twists: (F, 2, B, 6) to set: how far halves are from the section model's rest.
 
     Returns:
         The first frame that is not plain (without equilibrium, unstable, or far from where it was
@@ -212,7 +196,7 @@ def follow(
             plan.face, plan.frame, s, frames.corrections[k], frames.corrected,
         )  # fmt: skip
         set_weights(weights, layout, plan, section, load, s, frames.gravity[k])
-        if guided:
+        if guided[k]:
             follow_guide(R, p, guide_R, guide_p, k, R[k], p[k])
         else:
             continue_path(R, p, k, frames.order[k], R[k], p[k])
@@ -221,7 +205,7 @@ def follow(
             for m in range(3):
                 expected[i, m] = p[k, i, m]
         said = info[k]
-        near = guided or frames.order[k] > 0 or begun_near
+        near = guided[k] or frames.order[k] > 0 or begun_near
         motion, negative, widest, count, cheap = solve(
             layout, weights, space, R[k], p[k], tolerance, most, near, descend, shove,
             k == len(frames.released) - 1,
@@ -230,9 +214,14 @@ def follow(
         said[FACTORS], said[STEPS] = count, cheap
         said[ASTRAY] = furthest(p[k], expected)
         said[MOVED] = furthest(p[k], p[k - 1])
+        if frames.corrected:  # twists are from the rest that the section model has
+            set_elements(
+                space.el, space.rest, section, layout.ends, layout.fixed, plan.length, ratio,
+                plan.face, plan.frame, s, frames.corrections[k], False,
+            )  # fmt: skip
         half_twists(layout, space.rest, plan, section, s, R[k], p[k], twists[k])
         plain = motion <= tolerance and negative == 0
-        if not plain or not said[ASTRAY] <= max(far[0], far[1] * said[MOVED]):
+        if not plain or not said[ASTRAY] <= far[k]:
             return k
     return len(frames.released)
 
@@ -243,7 +232,7 @@ def half_twists(
 ) -> None:
     """Set how far the halves' middles have left their places at rest: (2, B, 6)."""
     joints = len(layout.place)
-    plane = 1 + quadratic(section, 9, s)
+    plane = 1 + quadratic(section, PLANE, s)
     face, home, relative, middle = np.empty(9), np.empty(9), np.empty(9), np.empty(9)
     for end in range(2):
         for b in range(layout.ends.shape[1]):
