@@ -40,7 +40,7 @@ EXPECTED = 4.0  # mm from where the path leads, beyond which a frame is followed
 JUMP = 12.0  # mm, the same where the path does not lead on: gravity changes
 SMALLEST = 1 / 32  # of a frame, the smallest step
 ALLOWED = 1.0  # mm that a small step may move more than twice what the step before did
-SNAP = 0.02  # of the grid's dimension: the least motion that is a snap
+SNAP = 0.03  # of the grid's dimension: the least motion that is a snap
 SHOVE = 0.1  # mm along the softest mode
 TURN = 3.0  # rad, by which a half-beam bends at most
 
@@ -259,7 +259,7 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
     """Follow a frame in small steps from the one before; return whether it was reached."""
     before = path.info[k - 1, MOVED] if k > 1 else np.inf
     rate = before if np.isfinite(before) else 0.0  # mm per frame
-    at, step = 0.0, 0.25
+    at, step, goes_on = 0.0, 0.25, False
     short = Path(
         np.stack([path.R[k - 1]] * 2),
         np.stack([path.p[k - 1]] * 2),
@@ -293,13 +293,16 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
             if not find(True, SHOVE if balanced else 0.0) and not find(True, SHOVE):
                 return False
             path.left_balance |= balanced
+            path.jumped[k] = True
             moved = float(short.info[1, MOVED])
-            if moved > SNAP * grid.dimension:
-                begun = frames.released[k - 1]
-                middle = (at + to) / 2
-                path.snaps.append(Snap(float(begun + middle * (frames.released[k] - begun)), k))
-                path.jumped[k] = True
+            snapped = not balanced and moved > SNAP * grid.dimension
+            begun = float(_between(frames, k, at).released[1])
+            if snapped and not goes_on and (k > 1 or begun > 0):
+                path.snaps.append(Snap(begun, k))
+            goes_on = snapped
             moved = 0.0
+        else:
+            goes_on = False
         rate = moved / (to - at) if moved > 0 else rate
         short.R[0], short.p[0] = short.R[1], short.p[1]
         at, step = to, min(2 * step, 0.25)
@@ -311,15 +314,20 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
 
 
 def _between(frames: Frames, k: int, part: float) -> Frames:
-    """Return what acts between two frames, all linear in between, as the second of two frames."""
+    """Return what acts between two frames, all linear in between, as the second of two frames.
 
-    def mixed(x: Numbers) -> Numbers:
+    From the flat frame on, gravity comes first, then the release.
+    """
+    heavy = min(1.0, 2 * part) if k == 1 else part
+    release = max(0.0, 2 * part - 1) if k == 1 else part
+
+    def mixed(x: Numbers, part: float) -> Numbers:
         return np.stack([x[k - 1], (1 - part) * x[k - 1] + part * x[k]])
 
     return Frames(
-        mixed(frames.released),
-        mixed(frames.gravity),
+        mixed(frames.released, release),
+        mixed(frames.gravity, heavy),
         np.zeros(2, np.int64),
-        mixed(frames.corrections),
+        mixed(frames.corrections, part),
         frames.corrected,
     )

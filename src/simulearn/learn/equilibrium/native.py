@@ -41,7 +41,7 @@ from simulearn.mechanics.path import (
     schedule_frames,
     trace,
 )
-from simulearn.schedule import FRAMES, Snap
+from simulearn.schedule import FRAMES
 
 Numbers = NDArray[np.float64]
 
@@ -81,9 +81,11 @@ def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) ->
         return np.ascontiguousarray(x, np.float32)
 
     (first, second), (third, last) = weights.encode, weights.decode
+    width = len(second[1])
+    own, other, around = np.split(stacked(1, 0), [width, 2 * width], axis=1)
     return Layers(
         *map(single, (*first, *second)),
-        stacked(0, 0), stacked(0, 1), stacked(1, 0), stacked(1, 1),
+        stacked(0, 0), stacked(0, 1), *map(single, (own, other, around)), stacked(1, 1),
         *map(single, (*third, *last)),
         single(VALUES_MIRROR),
         heads.mirror[0].astype(np.int64), single(heads.mirror[1]),
@@ -220,7 +222,7 @@ def _predict(
     out.sag[t] = np.linalg.norm(sag, axis=-1).mean()
     out.strain[t] = np.sqrt((first.twists[-1, ..., 3:] ** 2).sum(-1).mean())
     out.stable[t] = True
-    out.left_balance[t] = final.left_balance
+    out.left_balance[t] = first.left_balance or final.left_balance
     out.snaps[t] = tuple(final.snaps)
 
 
@@ -260,5 +262,3 @@ def _last_corrected(
         ended=found.ended,
     )
 
-
-__all__ = ["Networks", "Snap", "networks_of", "predict"]

@@ -217,7 +217,7 @@ def follow(
         if frames.corrected:  # twists are from the rest that the section model has
             set_elements(
                 space.el, space.rest, section, layout.ends, layout.fixed, plan.length, ratio,
-                plan.face, plan.frame, s, frames.corrections[k], False,
+                plan.face, plan.frame, s, frames.corrections[k], k < 0,
             )  # fmt: skip
         half_twists(layout, space.rest, plan, section, s, R[k], p[k], twists[k])
         plain = motion <= tolerance and negative == 0
