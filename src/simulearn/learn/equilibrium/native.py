@@ -47,7 +47,6 @@ Numbers = NDArray[np.float64]
 
 STOPS = np.array([0, 2, 4, 6, 8, 10, 11])  # frames on the way to the last alone
 PORTIONS = 8  # that each core's share of a batch is divided into, at least
-ASIDE = 4.0  # mm between first shape and last beyond which frame by frame is followed
 
 
 class Networks(NamedTuple):
@@ -229,7 +228,7 @@ def _predict(
 def _last_corrected(
     grid: Grid, frames: Any, corrections: Numbers, first: Path, tolerance: float
 ) -> Path:
-    """Return the path whose last frame is in corrected equilibrium, near the first shape."""
+    """Return the path whose last frame is in corrected equilibrium, near the first shape's."""
     ends = np.array([0, len(frames.released) - 1])
     two = frames._replace(
         released=frames.released[ends],
@@ -246,8 +245,6 @@ def _last_corrected(
         jumped=np.zeros(2, np.bool_),
     )
     found = trace(grid, two, guide, small_steps=False, tolerance=tolerance)
-    away = np.linalg.norm(found.p[-1] - first.p[-1], axis=-1).max()
-    found.ended &= bool(away < ASIDE)
 
     def spread(x: Any, y: Any) -> Any:
         full = x.copy()
