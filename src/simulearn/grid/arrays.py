@@ -87,6 +87,12 @@ def shown(value: Any, most: int = 40) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def hint(key: str, value: Any) -> str:
+    """Return what to do about a wrong value, where that is plain."""
+    in_space = key == "joints" and isinstance(value, list | tuple) and len(value) == 3
+    return "; drop z" if in_space else ""
+
+
 def _array(values: Any, key: str, width: int) -> NDArray[Any]:
     """Return an array of real numbers, (n,) or (n, width)."""
     try:
@@ -121,10 +127,8 @@ def _refuse(values: Any, key: str, width: int) -> NoReturn:
             break
     else:
         place, where, wrong = key, key, values
-    hint = ""
-    if key == "joints" and isinstance(wrong, (list, tuple)) and len(wrong) == 3:
-        hint = "; drop z"
-    raise InputError(f"{place} is {shown(wrong)}; {KEYS[key]}{hint}", code, where)
+    text = f"{place} is {shown(wrong)}; {KEYS[key]}{hint(key, wrong)}"
+    raise InputError(text, code, where)
 
 
 def _plain(value: Any) -> Any:
