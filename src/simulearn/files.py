@@ -75,7 +75,7 @@ def replacing(path: Path | str) -> Iterator[Path]:
 
 
 def _final(path: Path) -> Path:
-    """Return the path of the file itself, or say why no file can be there."""
+    """Return the path of the file itself, or raise InputError where no file can be."""
     try:
         final = Path(os.path.realpath(path))
         folder, there, file = final.is_dir(), final.exists(), final.is_file()
@@ -111,7 +111,7 @@ def _of_writing(error: OSError, temporary: Path) -> str | None:
     """Return why a file could not be written, or None if an error has another cause."""
     number = error.errno
     if number is None and (match := re.search(r"errno = (\d+)", str(error))):
-        number = int(match[1])  # HDF5 says it in words
+        number = int(match[1])  # HDF5 writes it into its message
     names = {str(name) for name in (error.filename, error.filename2) if name is not None}
     if number in NO_ROOM or str(temporary) in names:
         return error.strerror or os.strerror(number or errno.EIO)
@@ -119,7 +119,7 @@ def _of_writing(error: OSError, temporary: Path) -> str | None:
 
 
 def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
-    """Return the text of a file, or say in one line why it cannot be read.
+    """Return the text of a file, or raise InputError with the reason.
 
     Args:
         path: of the file.

@@ -62,7 +62,7 @@ def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
 
 
 def write_grid(grid: Grid, path: Path | str) -> None:
-    """Write a grid to a file, whole or not at all.
+    """Write a grid to a file, completely or not at all.
 
     Raises:
         InputError: the file cannot be written, or the grid could not be read back.
