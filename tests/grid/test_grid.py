@@ -50,7 +50,7 @@ CYCLE.append(CYCLE)
         ("actuators", [0, 0, "full", 0], "actuator-ratio", "beam 2", 'actuators[2] is "full"; '),
         ("actuators", [[0, 0], [0, 0]], "actuator-ratio", "beam 0", "actuators[0] is [0, 0]; "),
         ("actuators", [0, np.nan, 0, 0], "actuator-ratio", "beam 1", "actuators[1] is NaN; "),
-        ("actuators", [0, Fraction(1, 2)], "actuator-ratio", "beam 1", "actuators[1] is a Fraction"),
+        ("actuators", [0, Fraction(1, 2)], "actuator-ratio", "beam 1", "actuators[1] is a Frac"),
         ("fixed", 0.99, "fixed-index", "grid", "fixed is 0.99; the fixed joint is an index"),
         ("fixed", "0", "fixed-index", "grid", 'fixed is "0"; the fixed joint'),
         ("fixed", None, "fixed-index", "grid", "fixed is null; the fixed joint"),
