@@ -93,7 +93,7 @@ def run(job: TrialJob) -> TrialOutcome:
     from simulearn.fea import simulate_grid
 
     try:
-        grid, solver = grid_from_dict(job.grid), Solver.model_validate(job.solver)
+        grid, solver = grid_from_dict(job.grid, paths=True), Solver.model_validate(job.solver)
         material = Material.model_validate(job.material)
         trial = simulate_grid(grid, material, solver.layout, solver.control)
     except (ComputationError, InputError) as error:
@@ -124,7 +124,7 @@ def read_trial(path: Path) -> StoredTrial:
         # Opened here, since NumPy leaves a broken file open.
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return StoredTrial(
-                grid_from_dict(json.loads(file["grid"].item())),
+                grid_from_dict(json.loads(file["grid"].item()), paths=True),
                 file["joints"],
                 file["beams"],
                 file["stress"],
