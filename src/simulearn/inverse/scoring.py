@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
-from simulearn.learn.model import Designs, last_frame
+from simulearn.learn.common.model import Designs, last_frame
 from simulearn.simulate import Simulator
 from simulearn.simulate.learned import Learned
 
@@ -66,6 +66,6 @@ def _one_by_one(engine: Simulator, goals: Goals, going: Going) -> Places:
 def grids(designs: Designs) -> list[Grid]:
     """Return designs as grids."""
     return [
-        Grid(flat, designs.beams, ratios, designs.fixed, designs.material)
+        Grid(flat, designs.beams, ratios, designs.fixed, designs.reference)
         for flat, ratios in zip(designs.flat, designs.actuators, strict=True)
     ]

@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from simulearn.dataset import Batch
-from simulearn.learn import stages
-from simulearn.learn.evaluate import Evaluation
-from simulearn.learn.model import Frames
-from simulearn.learn.train import Row
+from simulearn.learn.common.evaluate import Evaluation
+from simulearn.learn.common.model import Frames
+from simulearn.learn.equilibrium.stages import StageRow
+from simulearn.learn.paper.train import EpochRow
 from simulearn.show import style
 from simulearn.show.camera import Camera
 from simulearn.simulate import Result, skin
@@ -30,7 +30,7 @@ PARTS = {"release": "release", "creep": "creep", "stress": "stress", "dislocatio
 SPACING = 3.0  # mm, length of the quadrilaterals along a beam
 
 
-def loss_picture(rows: Sequence[Row], name: str) -> Figure:
+def loss_picture(rows: Sequence[EpochRow], name: str) -> Figure:
     """Return the course of a training: parts of the loss, and the error of trials set aside."""
     with style.paper():
         figure = Figure(figsize=(7.2, 2.9), dpi=style.DPI, layout="constrained")
@@ -64,7 +64,7 @@ def loss_picture(rows: Sequence[Row], name: str) -> Figure:
     return figure
 
 
-def stages_picture(rows: Sequence[stages.Row], name: str) -> Figure:
+def stages_picture(rows: Sequence[StageRow], name: str) -> Figure:
     """Return the course of a fitting: the loss of each of its stages."""
     parts = {
         stage: [row for row in rows if row.stage == stage] for stage in {r.stage: 0 for r in rows}

@@ -11,8 +11,9 @@ import numpy as np
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Grid, TrainingRange
-from simulearn.learn.bundle import Bundle, bundle_of
-from simulearn.learn.model import Designs, Frames
+from simulearn.learn.common.bundle import Bundle, bundle_of
+from simulearn.learn.common.model import Designs, Frames
+from simulearn.material import load_material
 from simulearn.simulate.engines import checked_grid
 from simulearn.simulate.result import FRAMES, Result
 from simulearn.simulate.simulator import Progress
@@ -50,10 +51,11 @@ class Learned:
         checked = [checked_grid(grid)[0] for grid in grids]
         card, groups = self.bundle.card, defaultdict(list)
         for k, grid in enumerate(checked):
-            if grid.material != card.material:
+            material = load_material(grid.material)
+            if material.physics != card.material.physics:
                 raise InputError(
-                    f'material is {grid.material}; the model "{card.name}" has learnt '
-                    f"{card.material}"
+                    f'material is {material.identity}; the model "{card.name}" has learnt '
+                    f"{card.material.identity}"
                 )
             groups[len(grid.joints), grid.fixed, grid.beams.tobytes()].append(k)
         results: dict[int, Result] = {}
@@ -95,5 +97,6 @@ def _designs(grids: Sequence[Grid]) -> Designs:
         fixed=grids[0].fixed,
         flat=np.stack([grid.joints for grid in grids]),
         actuators=np.stack([grid.actuators for grid in grids]),
-        material=grids[0].material,
+        material=load_material(grids[0].material),
+        reference=grids[0].material,
     )
