@@ -7,6 +7,7 @@ from skfem import ElementHexS2
 
 from simulearn.fea.solid import Solid
 from simulearn.grid import Grid
+from simulearn.material import load_material
 from simulearn.simulate.result import FRAMES, Result
 
 HALF_WIDTH, HALF_THICKNESS = 3.6, 2.0
@@ -60,6 +61,7 @@ def result(grid=None, bend=saddle, solid=True):
         beams=move(beams),
         stress=rng.normal(size=(FRAMES, len(beams), 4, 4, 6)),
         seconds=1.25,
+        material=load_material("pla-hot-water").identity,
         record={"iterations": [0] + [3] * (FRAMES - 1)},
         solid=mesh,
         displacements=move(mesh.nodes) - mesh.nodes if mesh else None,

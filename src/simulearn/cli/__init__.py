@@ -14,9 +14,22 @@ import typer
 from rich.markup import escape
 
 from simulearn import __version__
-from simulearn.cli import dataset, fabricate, grids, inverse, learn  # noqa: F401  (they add their commands)
+from simulearn.cli import (  # noqa: F401  (they add their commands)
+    dataset,
+    fabricate,
+    grids,
+    inverse,
+    learn,
+    simulate,
+)
 from simulearn.cli.base import app, err
-from simulearn.errors import ComputationError, InputError
+from simulearn.errors import CancelledError, ComputationError, InputError
+
+HINTS = {  # what helps on the command line, by the code of an error
+    "no-answer": "--engine fea may have one",
+    "material-not-learnt": "--engine fea simulates any material, and `simulearn train` learns one",
+    "engine-not-differentiable": "--method default takes any engine",
+}
 
 
 @app.callback(invoke_without_command=True)
@@ -38,9 +51,11 @@ def main() -> None:
     except (typer.Abort, KeyboardInterrupt):
         code = 130
     except InputError as error:
-        _fail(str(error), 1)
+        _fail(_with_hint(str(error), HINTS.get(error.code, "")), 1)
     except ComputationError as error:
-        _fail(str(error), 3)
+        _fail(_with_hint(str(error), HINTS.get(error.code, error.hint)), 3)
+    except CancelledError:
+        code = 130
     except Exception as error:
         if hasattr(error, "exit_code") and hasattr(error, "format_message"):  # usage
             _fail(f"{error.format_message()} (see simulearn --help)", int(error.exit_code))
@@ -61,6 +76,10 @@ def _interrupt_again(lost: Any) -> None:
         threading.Timer(0.02, _thread.interrupt_main).start()
     else:
         sys.__unraisablehook__(lost)
+
+
+def _with_hint(text: str, hint: str) -> str:
+    return f"{text}; {hint}" if hint else text
 
 
 def _fail(message: str, code: int) -> None:

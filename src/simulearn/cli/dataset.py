@@ -9,18 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TaskID,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 from rich.table import Table
 
 from simulearn.cli.base import Json, app, err, out
+from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
 
 if TYPE_CHECKING:
@@ -99,8 +91,8 @@ def pack(
     """Pack a generated folder into one HDF5 file."""
     from simulearn import dataset as sets
 
-    with _bar("packing", quiet=as_json) as tell:
-        count = sets.pack(folder, output, partial, tell)
+    with counting("packing", quiet=as_json) as progress:
+        count = sets.pack(folder, output, partial, progress)
     size = output.stat().st_size
     if as_json:
         print(json.dumps({"file": str(output), "trials": count, "bytes": size}))
@@ -187,29 +179,6 @@ def _plain(tally: "Tally") -> dict[str, Any]:
     }
 
 
-def _columns() -> list[Any]:
-    return [
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[words]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(elapsed_when_finished=False),
-    ]
-
-
-@contextmanager
-def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
-    """Yield what is told (done, total)."""
-    if quiet or not err.is_terminal:
-        yield lambda done, total: None
-        return
-    with Progress(*_columns(), console=err, transient=True) as bar:
-        task = bar.add_task(title, total=None, words="")
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
 @contextmanager
 def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
     """Yield what a run tells its tally to: a bar, or lines where it is no terminal."""
@@ -220,8 +189,8 @@ def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
         yield _lines
         return
     # The rate of a long run settles; the last quarter of an hour is what remaining time goes by.
-    with Progress(*_columns(), console=err, transient=True, speed_estimate_period=900) as bar:
-        task: list[TaskID] = []
+    with bar(remaining=True, period=900) as shown:
+        task: list[Any] = []
 
         def tell(tally: "Tally") -> None:
             done = tally.trials - tally.left
@@ -229,8 +198,8 @@ def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
                 f", {tally.failed} failed" if tally.failed else ""
             )
             if not task:
-                task.append(bar.add_task("trials", total=tally.trials, completed=done, words=""))
-            bar.update(task[0], completed=done, words=words)
+                task.append(shown.add_task("trials", total=tally.trials, completed=done, words=""))
+            shown.update(task[0], completed=done, words=words)
 
         yield tell
 

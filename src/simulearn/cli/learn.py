@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.progress import TimeRemainingColumn as Remaining
 from rich.table import Table
 
-from simulearn.cli.base import Json, app, err, out
+from simulearn.cli.base import Json, app, err, folder_of, out
+from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
 from simulearn.files import replacing
 
@@ -61,8 +60,8 @@ def train(
         from simulearn.learn.search import search as search_for
         from simulearn.show.learning import search_picture
 
-        with _bar("runs", quiet=as_json) as tell:
-            figures = search_for(asked, trials, folder, search, tell)
+        with counting("runs", quiet=as_json) as progress:
+            figures = search_for(asked, trials, folder, search, progress)
         with replacing(folder / "search.png") as temporary:
             search_picture(figures).savefig(temporary)
         if as_json:
@@ -120,8 +119,8 @@ def evaluate(
         folder_of(output)
     data = read_dataset(dataset, stress=False)
     batches = for_testing(data)
-    with _bar("trials", quiet=as_json) as tell:
-        found = evaluate_(trained, batches, tell)
+    with counting("trials", quiet=as_json) as progress:
+        found = evaluate_(trained, batches, progress)
     figures = {
         "model": bundle.card.name,
         "kind": bundle.card.kind,
@@ -139,14 +138,6 @@ def evaluate(
     out.print(_table(figures))
     if output is not None:
         out.print(f"wrote {escape(str(output))}/figures.json, trials.csv, errors.png, grids.png")
-
-
-def folder_of(path: Path) -> None:
-    """Make a folder, or say why it cannot be made."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be made ({error.strerror})") from error
 
 
 def _write(found: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
@@ -198,18 +189,6 @@ def _best(figures: dict[str, Any]) -> str:
 
 
 @contextmanager
-def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
-    """Yield what is told (done, total)."""
-    if quiet or not err.is_terminal:
-        yield lambda done, total: None
-        return
-    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=err, transient=True) as bar:
-        task = bar.add_task(title, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
-@contextmanager
 def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
     """Yield what a run tells: a bar on a terminal, a line for each epoch elsewhere."""
     if quiet:
@@ -223,22 +202,13 @@ def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
 
         yield line
         return
-    columns = (
-        TextColumn("updates"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[words]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        Remaining(elapsed_when_finished=False),
-    )
-    with Progress(*columns, console=err, transient=True, speed_estimate_period=600) as bar:
-        task = bar.add_task("updates", total=None, words="")
+    with bar(remaining=True, period=600) as shown:
+        task = shown.add_task("updates", total=None, words="")
 
         def tell(row: Any, done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
+            shown.update(task, completed=done, total=total)
             if row is not None:
-                bar.update(task, words=_words(row))
+                shown.update(task, words=_words(row))
 
         yield tell
 

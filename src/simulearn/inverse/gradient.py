@@ -42,8 +42,10 @@ def gradient(problem: Problem, start: Found) -> Iterator[Did]:
     model = problem.model
     if not isinstance(model, Equilibrium):
         raise InputError(
-            "the method gradient goes through a learned engine of kind equilibrium or beams; "
-            "ask another method of this one"
+            "the method gradient needs a learned engine of kind equilibrium or beams, which can "
+            "be differentiated; use another method with this engine",
+            "engine-not-differentiable",
+            "method",
         )
     begin, p = start, len(start.x)
     while True:

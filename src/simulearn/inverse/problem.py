@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.errors import Cancel, stop_if
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.scoring import Places
@@ -64,6 +65,7 @@ class Problem:
         model: the learned simulator that tells it, for those who differentiate it.
         source: of what is drawn at random.
         until: when to stop, by `now`.
+        cancel: stops the search.
         best: so far.
         designs: how many were scored.
     """
@@ -75,6 +77,7 @@ class Problem:
     source: np.random.Generator = field(default_factory=lambda: drawing(0))
     until: float = np.inf
     now: Callable[[], float] = monotonic
+    cancel: Cancel | None = None
     best: Found | None = None
     designs: int = field(default=0)
 
@@ -132,7 +135,8 @@ class Problem:
         return self.space.grid_at(found.x, found.a)
 
     def going(self) -> None:
-        """Raise OutOfTime when it is."""
+        """Raise OutOfTime or CancelledError when the search is to stop."""
+        stop_if(self.cancel)
         if self.now() > self.until:
             raise OutOfTime
 

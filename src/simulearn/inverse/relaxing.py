@@ -49,7 +49,10 @@ def relaxed(problem: Problem, x: Array, a: Array) -> Iterator[tuple[Loose, Array
     """
     p, damping = len(x), 1.0
     most = np.r_[np.full(p, np.inf), np.full(len(a), UNIT)]
-    ask = lambda z: problem.loose(z[:, :p], z[:, p:] / UNIT)  # noqa: E731
+
+    def ask(z: Array) -> Array:
+        return problem.loose(z[:, :p], z[:, p:] / UNIT)
+
     z = np.r_[x, UNIT * a]
     told = ask(z[None])
     now = Loose(z, told[0], float(problem.error(told)[0]))

@@ -22,6 +22,7 @@ Mask = NDArray[np.bool_]
 
 FLIPS = {"x": (-1.0, 1.0), "y": (1.0, -1.0), "xy": (-1.0, -1.0), "none": (1.0, 1.0)}
 CLOSE = 1e-9  # of ratios and lengths that are the same
+ROUNDING = 1e-6  # mm, of sizes at their limits, as in validation
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Space:
         groups: beams that have the same ratio.
         move: step of a joint, mm.
         ratio: step of a ratio.
-        training: what the engine has seen; designs beyond are not valid here, if the grid is not.
+        training: sizes that the engine has learnt; designs outside are not valid here.
     """
 
     grid: Grid
@@ -66,16 +67,19 @@ class Space:
         Args:
             grid: valid, without dangling beams.
             free: what may change.
-            training: what the engine has seen.
+            training: sizes that the engine has learnt; they confine the space unless the grid
+                itself is outside.
 
         Raises:
             InputError: the grid is not valid, or nothing may change.
         """
         grid = grid.centred
         material = load_material(grid.material)
-        report = validate(grid, material, training=training)
+        report = validate(grid, material)
         for error in report.errors:
-            raise InputError(f"the design to begin with: {error.message}")
+            raise InputError(
+                f"the design to begin with: {error.message}", error.code, error.where, report.errors
+            )
         motions, units = _motions(grid, free)
         own = free.actuators
         beams = range(len(grid.beams)) if own is None else sorted(set(own))
@@ -89,8 +93,8 @@ class Space:
                 )
         if not (units or groups):
             raise InputError("free lets nothing change; name joints or actuators")
-        if report.warnings:
-            training = None  # it is beyond what was seen anyhow
+        if training is not None and outside(grid.joints[None], grid, training)[0]:
+            training = None
         return cls(grid, motions, units, groups, free.move, free.ratio, training)
 
     @property
@@ -121,11 +125,26 @@ class Space:
 
     def valid(self, x: Array, a: Array) -> Mask:
         """Return which of the points (T, P), (T, Q) are valid grids."""
-        return np.array([self._fits(*pair) for pair in zip(x, a, strict=True)], dtype=bool)
+        net = self.nets(x)
+        ratios = np.abs(self.designs(x, a).actuators)
+        long_enough = (ratios == 0) | (ratios * net >= self._shortest - CLOSE)
+        valid: Mask = (
+            np.isfinite(net).all(axis=1)
+            & (np.abs(a) <= 1 + CLOSE).all(axis=1)
+            & long_enough.all(axis=1)
+        )
+        return valid
+
+    def nets(self, x: Array) -> Array:
+        """Return the net lengths (T, B) mm of the beams; NaN where the joints lie impossibly."""
+        different, which = np.unique(x, axis=0, return_inverse=True)
+        rows = np.array([self._layout(row.tobytes()) for row in different])
+        return rows.reshape(-1, len(self.grid.beams))[which.ravel()]
 
     def net(self, x: Array) -> Array | None:
         """Return the net lengths (B,) mm of the beams, or None if the joints lie impossibly."""
-        return self._layout(np.ascontiguousarray(x).tobytes())
+        net = self.nets(x[None])[0]
+        return net if np.isfinite(net).all() else None
 
     def options(self, x: Array) -> list[Array]:
         """Return the ratios that each actuator may have at joints x (P,): whole, long enough."""
@@ -150,28 +169,42 @@ class Space:
     def _shortest(self) -> float:
         return self._material.limits.actuator_length
 
-    def _fits(self, x: Array, a: Array) -> bool:
-        if not (np.abs(a) <= 1 + CLOSE).all():
-            return False
-        net = self.net(x)
-        if net is None:
-            return False
-        ratios = np.abs(self.designs(x[None], a[None]).actuators[0])
-        return bool(((ratios == 0) | (ratios * net >= self._shortest - CLOSE)).all())
-
     @cached_property
     def _layout(self):  # type: ignore[no-untyped-def]
         @lru_cache(maxsize=4096)
-        def layout(x: bytes) -> Array | None:
-            """Return the net lengths of a layout of joints without actuators, if it is valid."""
+        def layout(x: bytes) -> Array:
+            """Return the net lengths of a layout of joints without actuators, NaN if not valid."""
             moved = self.grid_at(np.frombuffer(x), self.start[1])
             bare = Grid(moved.joints, moved.beams, 0 * moved.actuators, moved.fixed, moved.material)
-            report = validate(bare, self._material, training=self.training)
-            if report.errors or (self.training is not None and report.warnings):
-                return None
+            report = validate(bare, self._material)
+            confined = self.training is not None and bool(
+                outside(bare.joints[None], bare, self.training)[0]
+            )
+            if report.errors or confined:
+                return np.full(len(bare.beams), np.nan)
             return np.array([report.net_lengths[b] for b in range(len(bare.beams))])
 
         return layout
+
+
+def outside(joints: Array, grid: Grid, training: TrainingRange) -> Mask:
+    """Return which layouts of joints (T, J, 2) mm are beyond the sizes that were learnt.
+
+    Args:
+        joints: of designs with the topology of a grid.
+        grid: whose beams and fixed joint count.
+        training: the sizes.
+    """
+    start, end = joints[:, grid.beams[:, 0]], joints[:, grid.beams[:, 1]]
+    lengths = np.linalg.norm(end - start, axis=-1)
+    size = np.linalg.norm(joints - joints[:, [grid.fixed]], axis=-1).max(axis=1)
+    mask: Mask = np.zeros(len(joints), dtype=bool)
+    for values, (least, most) in (
+        (lengths, training.beam_length),
+        (size[:, None], training.dimension),
+    ):
+        mask |= ((values < least - ROUNDING) | (values > most + ROUNDING)).any(axis=1)
+    return mask
 
 
 def _motions(grid: Grid, free: Free) -> tuple[Array, tuple[Unit, ...]]:

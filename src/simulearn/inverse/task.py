@@ -77,7 +77,7 @@ class Limits(_Part):
 
     Attributes:
         iterations: of the method.
-        seconds: of searching and checking; what is begun is finished.
+        seconds: of searching and checking; only the first check may take up to ten more.
         corrections: how often to go on from targets corrected by FEA.
     """
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from simulearn.show import style
 from simulearn.show.camera import Camera
-from simulearn.simulate import Result, Skin, skin, summary
+from simulearn.simulate import Result, Skin, remarks, skin, summary
 
 Array = NDArray[np.float64]
 SPACING = 2.0  # mm, length of the quadrilaterals along a beam
@@ -126,6 +126,14 @@ def dimensions(result: Result) -> str:
     return text.replace("-", "\N{MINUS SIGN}")
 
 
+def qualified(result: Result) -> list[str]:
+    """Return what qualifies an answer, for the line beneath its picture."""
+    count = len(result.warnings)
+    return [*remarks(result), *([f"{count} warnings"] if count > 1 else [])] + [
+        message.message for message in result.warnings if count == 1
+    ]
+
+
 def deformed(
     result: Result, frame: int = -1, camera: Camera = Camera(), width: float = 5.2
 ) -> Figure:
@@ -137,16 +145,16 @@ def deformed(
         camera: where the viewer is.
         width: of the figure, inches.
     """
-    with style.paper():
-        surface = skin(result, SPACING)
-        low, high = extent(surface, camera, [0, frame])
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, inch = style.footed(fig, low, high)
-        draw_deformed(ax, result, surface, frame, camera)
-        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
-        style.words(fig, dimensions(result))
-        style.legend(fig)
-    return fig
+    surface = skin(result, SPACING)
+    low, high = extent(surface, camera, [0, frame])
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, inch = style.footed(fig, low, high)
+    draw_deformed(ax, result, surface, frame, camera)
+    draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
+    style.words(fig, dimensions(result))
+    style.remark(fig, qualified(result))
+    style.legend(fig)
+    return style.ink(fig)
 
 
 def _outlined(surface: Skin, front: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -44,37 +44,34 @@ def layers(path: Toolpath, title: str = "", width: float = 7.2) -> Figure:
     side, words = width / columns, 0.17  # inches
     tall = side * float((high - low)[1] / (high - low)[0]) + words
     height = rows * tall + style.FOOT
-    with style.paper():
-        fig = Figure(figsize=(width, height), dpi=style.DPI)
-        inch = float((high - low)[0] / side)
-        for k, layer in enumerate(path.layers):
-            row, column = divmod(k, columns)
-            bottom = style.FOOT + (rows - 1 - row) * tall
-            place = (
-                column / columns,
-                bottom / height,
-                1 / columns,
-                (tall - words) / height,
-            )
-            ax = _axes(fig, place, low, high)
-            _beads(ax, layer, _top(path, k), WHOLE * 72 / inch, skirt=False)
-            fig.text(
-                place[0] + 0.5 / columns,
-                (bottom + tall - 0.6 * words) / height,
-                f"layer {k + 1}, z {layer.z:.2f} mm",
-                ha="center",
-                va="center_baseline",
-                fontsize=6.5,
-            )
-        foot = _axes(
-            fig, (0, 0, 1, style.FOOT / height), np.zeros(2), np.array([width, style.FOOT])
+    fig = Figure(figsize=(width, height), dpi=style.DPI)
+    inch = float((high - low)[0] / side)
+    for k, layer in enumerate(path.layers):
+        row, column = divmod(k, columns)
+        bottom = style.FOOT + (rows - 1 - row) * tall
+        place = (
+            column / columns,
+            bottom / height,
+            1 / columns,
+            (tall - words) / height,
         )
-        length = style.nice_length(float((high - low)[0]) * 2)
-        _bar(foot, 0.06 * side, 0.4, length, 1 / inch)
-        style.words(fig, title)
-        roles = {bead.role for q in path.layers for bead in q.beads} - {SKIRT}
-        _legend(fig, roles, (style.BOTTOM, style.TOP), travels=False)
-    return fig
+        ax = _axes(fig, place, low, high)
+        _beads(ax, layer, _top(path, k), WHOLE * 72 / inch, skirt=False)
+        fig.text(
+            place[0] + 0.5 / columns,
+            (bottom + tall - 0.6 * words) / height,
+            f"layer {k + 1}, z {layer.z:.2f} mm",
+            ha="center",
+            va="center_baseline",
+            fontsize=6.5,
+        )
+    foot = _axes(fig, (0, 0, 1, style.FOOT / height), np.zeros(2), np.array([width, style.FOOT]))
+    length = style.nice_length(float((high - low)[0]) * 2)
+    _bar(foot, 0.06 * side, 0.4, length, 1 / inch)
+    style.words(fig, title)
+    roles = {bead.role for q in path.layers for bead in q.beads} - {SKIRT}
+    _legend(fig, roles, (style.BOTTOM, style.TOP), travels=False)
+    return style.ink(fig)
 
 
 def layer(path: Toolpath, number: int, title: str = "", width: float = 5.2) -> Figure:
@@ -88,15 +85,14 @@ def layer(path: Toolpath, number: int, title: str = "", width: float = 5.2) -> F
     """
     shown = path.layers[number]
     low, high = _extent((shown,), skirt=True)
-    with style.paper():
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, inch = style.footed(fig, low, high)
-        _beads(ax, shown, _top(path, number), PART * 72 / inch, skirt=True)
-        _travels(ax, shown)
-        style.words(fig, title)
-        colour = style.TOP if _top(path, number) else style.BOTTOM
-        _legend(fig, {bead.role for bead in shown.beads}, (colour,), travels=True)
-    return fig
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, inch = style.footed(fig, low, high)
+    _beads(ax, shown, _top(path, number), PART * 72 / inch, skirt=True)
+    _travels(ax, shown)
+    style.words(fig, title)
+    colour = style.TOP if _top(path, number) else style.BOTTOM
+    _legend(fig, {bead.role for bead in shown.beads}, (colour,), travels=True)
+    return style.ink(fig)
 
 
 def _top(path: Toolpath, number: int) -> bool:

@@ -1,8 +1,10 @@
-"""One interface to every engine, and the Result that all of them give."""
+"""One interface to every engine, and the outcome that all of them give."""
 
 from simulearn.simulate.engines import ENGINES, engine
-from simulearn.simulate.result import FRAMES, Result
+from simulearn.simulate.result import FRAMES, Failure, Outcome, Result, one, results
 from simulearn.simulate.resultfile import (
+    failure_to_dict,
+    outcome_to_dict,
     read_json,
     read_npz,
     result_from_dict,
@@ -12,20 +14,27 @@ from simulearn.simulate.resultfile import (
 )
 from simulearn.simulate.simulator import Progress, Simulator
 from simulearn.simulate.skin import Skin, skin
-from simulearn.simulate.summary import summary
+from simulearn.simulate.summary import remarks, summary
 
 __all__ = [
     "ENGINES",
     "FRAMES",
+    "Failure",
+    "Outcome",
     "Progress",
     "Result",
     "Simulator",
     "Skin",
     "engine",
+    "failure_to_dict",
+    "one",
+    "outcome_to_dict",
     "read_json",
     "read_npz",
+    "remarks",
     "result_from_dict",
     "result_to_dict",
+    "results",
     "skin",
     "summary",
     "write_json",
