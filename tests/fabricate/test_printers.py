@@ -169,7 +169,20 @@ def test_a_grid_that_is_not_valid_is_refused():
         ("G2 X10 Y30 I5 J5", "an arc"),
         ("M104 S{hot}", "{hot} is not known; words are temperature"),
         ("G92 X0", "moves the origin"),
+        ("G92X0", "moves the origin"),
+        ("G92.1", "moves the origin"),
+        ("G10 L2 P1 X5", "G10 L2 moves the origin"),
+        ("G10 P0 Z-1", "G10 Z-1 moves the origin"),
+        ("G54", "moves the origin"),
+        ("G59.1", "moves the origin"),
+        ("M851 Z-2", "moves the probe"),
+        ("SET_GCODE_OFFSET Z=-1", "moves the origin"),
+        ("set_gcode_offset Z=-1", "moves the origin"),
+        ("PRINT_START\nG0 X5", "not known after a macro"),
+        ("PRINT_START\nG91\nG0 X5", "relative to a place that is not known"),
+        ("G91\nG90\nG91\nG0 Y1", "relative to a place that is not known"),
         ("G20", "inches"),
+        ("G020", "inches"),
         ("N10 G1 X999", "leads to X 999"),
         ("G53 G1 X999", "leads to X 999"),
         ("G1X999Y5", "leads to X 999"),
@@ -186,6 +199,36 @@ def test_code_that_leaves_the_bed_is_refused(code, words):
     assert "code.start" in str(refused.value)
 
 
+def test_units_and_modes_stand_before_the_start_code_and_after_it():
+    job = prepare([SMALL], changed("prusa-mk4", code={"start": "G28\nG91\nG0 Z3"}))
+    lines = job.gcode.splitlines()
+    start, first = lines.index("G28"), lines.index(";LAYER:0")
+    modes = ["G21", "G90", "M83"]
+    assert [line for line in lines[:start] if not line.startswith(";")] == modes
+    assert lines[start + 3 : first][1:4] == modes
+    # A machine that comes in relative mode is thus where the check takes it to be.
+    assert "G91" not in lines[start + 3 :]
+
+
+def test_firmware_retraction_and_a_mode_after_a_macro_are_allowed():
+    start = "PRINT_START\nG90\nG0 X5 Y5 Z5\nG10\nG11\nG92 E0\nG91\nG0 X-5"
+    assert "G0 X-5" in prepare([SMALL], changed("prusa-mk4", code={"start": start})).gcode
+
+
+@pytest.mark.parametrize(("axis", "high"), [("X", 250.0), ("Y", 210.0), ("Z", 220.0)])
+def test_the_end_code_begins_where_the_nozzle_is(axis, high):
+    k = "XYZ".index(axis)
+    last = prepare([SMALL], changed("prusa-mk4")).moves.places[-1, k]
+
+    def file(step):
+        end = f"G91\nG0 {axis}{step:.3f}"
+        return prepare([SMALL], changed("prusa-mk4", code={"end": end})).gcode
+
+    assert f"G0 {axis}{high - last:.3f}" in file(high - last)
+    with pytest.raises(InputError, match=f"code.end, line 2: leads to {axis} {high:g}.01 mm"):
+        file(high - last + 0.01)
+
+
 def test_words_in_braces_are_filled_in():
     start = (
         "A S{temperature} B{bed} N{nozzle} F{filament} L{layer}\nBOX {min_x} {max_x}\nG91\nG0 Z3"
@@ -198,7 +241,7 @@ def test_words_in_braces_are_filled_in():
     assert f"BOX {low[0]:g} {high[0]:g}" in text
     assert "G0 Z14 X610" in text
     # Absolute again whatever the profile's code left, and heaters off whatever its end does.
-    assert text.index("G0 Z3") < text.index("\nG90") < text.index(";LAYER:0")
+    assert text.index("G0 Z3") < text.index("\nG90", text.index("G0 Z3")) < text.index(";LAYER:0")
     assert text.rindex("M104 S0") < text.rindex("PARK")
 
 

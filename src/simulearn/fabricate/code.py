@@ -1,7 +1,9 @@
 """The code before and after a print: words in braces filled in, and nothing that leaves the bed.
 
-A profile's code is its owner's, and goes to the printer as it stands. But a move that SimuLearn can
-read it also checks; one that it cannot, such as a macro's, is the owner's affair.
+A profile's code goes to the printer as it stands. Each move in it is checked in the mode that
+holds there: the file sets absolute coordinates (G90) before the start code, and the end code begins
+in them at the place of the last move. What a macro does cannot be read; so after one the place and
+the mode are unknown until the code sets them.
 """
 
 import re
@@ -18,15 +20,21 @@ ARC = re.compile(r"[Gg]0*[23](?![\d.])")
 GLUED = re.compile(r"[\d.][Ee][-+]?\d")
 NUMBER = re.compile(r"^[Nn]\d+\s*")
 COMMAND = re.compile(r"(?=\b[GgMm]\d)")
-SPOKEN = ("M117", "M118")  # their text is shown, not done
+HEAD = re.compile(r"([GM])\s*0*(\d+(?:\.\d+)?)", re.IGNORECASE)
+SHOWN = ("M117", "M118")  # their text is shown, not done
+ORIGIN = "moves the origin, and with it the whole print"
 FORBIDDEN = {
     "G20": "counts in inches, and files are in millimetres",
-    "G52": "moves the origin, and with it the whole print",
-    "M206": "moves the origin, and with it the whole print",
-    "M428": "moves the origin, and with it the whole print",
+    "G52": ORIGIN,
+    "M206": ORIGIN,
+    "M428": ORIGIN,
+    "M851": "moves the probe, and with it the height of the whole print",
     "M92": "changes how far the machine moves",
     "M200": "changes how E is counted",
+    "SET_GCODE_OFFSET": ORIGIN,
 }
+# The coordinate systems G54 to G59.3, and what else of G92 there is (G92.1 and the like).
+SYSTEM = re.compile(r"G(5[4-9](\.\d+)?|92\.\d+)")
 ROUNDING = 1e-6
 
 
@@ -37,12 +45,12 @@ class Frame:
     Attributes:
         low: least x and y of what is printed, mm.
         high: greatest x and y.
-        top: height of the nozzle after the print, mm.
+        last: x, y and z of the nozzle after the print, mm.
     """
 
     low: tuple[float, float]
     high: tuple[float, float]
-    top: float
+    last: tuple[float, float, float]
 
 
 def filled(printer: Printer, settings: Settings, frame: Frame, which: str) -> list[str]:
@@ -69,7 +77,7 @@ def filled(printer: Printer, settings: Settings, frame: Frame, which: str) -> li
         "min_y": frame.low[1],
         "max_x": frame.high[0],
         "max_y": frame.high[1],
-        "top": frame.top,
+        "top": frame.last[2],
         "bed_min_x": bed.low[0],
         "bed_min_y": bed.low[1],
         "bed_max_x": bed.high[0],
@@ -79,7 +87,7 @@ def filled(printer: Printer, settings: Settings, frame: Frame, which: str) -> li
     lines = []
     checked = _Checked(printer)
     if which == "end":
-        checked.at = {"X": frame.low[0], "Y": frame.low[1], "Z": frame.top}
+        checked.at = dict(zip("XYZ", frame.last, strict=True))
     for k, line in enumerate(text.strip("\n").splitlines(), 1):
         where = f"{printer.name}: code.{which}, line {k}"
         if not (line.isascii() and line.replace("\t", " ").isprintable()):
@@ -100,7 +108,7 @@ class _Checked:
     def __init__(self, printer: Printer) -> None:
         self.printer = printer
         self.at: dict[str, float | None] = {"X": None, "Y": None, "Z": None}
-        self.relative = False
+        self.relative: bool | None = False  # None where it is not known
         bed = printer.bed
         self.reach = {
             "X": (bed.low[0], bed.high[0]),
@@ -116,26 +124,36 @@ class _Checked:
         """
         code = re.sub(r"\(.*?\)", "", line.split(";", 1)[0]).strip()
         code = NUMBER.sub("", code)
-        if code.upper().startswith(SPOKEN):
+        if code.upper().startswith(SHOWN):
             return
         for command in COMMAND.split(code):
             self._read(command.strip(), where)
 
     def _read(self, code: str, where: str) -> None:
-        head = code.split()[0].upper() if code else ""
+        if not code:
+            return
+        match = HEAD.match(code)
+        head = f"{match[1]}{match[2]}".upper() if match else code.split()[0].upper()
+        words = [(axis.upper(), text) for axis, text in TOKEN.findall(HEAD.sub("", code, count=1))]
+        if head in FORBIDDEN:
+            raise InputError(f"{where}: {head} {FORBIDDEN[head]}; leave it out")
+        if SYSTEM.fullmatch(head):
+            raise InputError(f"{where}: {head} {ORIGIN}; leave it out")
         if head in ("G90", "G91"):
             self.relative = head == "G91"
         elif head == "G28":
             self.at = dict.fromkeys(self.at)
-        elif head in FORBIDDEN:
-            raise InputError(f"{where}: {head} {FORBIDDEN[head]}; leave it out")
+        elif head == "G10":  # alone it draws filament back
+            for axis, text in words:
+                if axis in "LXYZ":
+                    raise InputError(f"{where}: G10 {axis}{text} {ORIGIN}; leave it out")
         elif head == "G92":
-            for axis, value in TOKEN.findall(code[3:]):
-                if axis.upper() in self.at:
-                    raise InputError(
-                        f"{where}: G92 {axis.upper()}{value} moves the origin, and with it the "
-                        f"whole print; only G92 E is allowed"
-                    )
+            for axis, text in words:
+                if axis in self.at:
+                    raise InputError(f"{where}: G92 {axis}{text} {ORIGIN}; only G92 E is allowed")
+        elif not match:
+            self.relative = None
+            self.at = dict.fromkeys(self.at)
         elif ARC.match(code):
             raise InputError(f"{where}: an arc (G2, G3) cannot be checked; use straight moves")
         elif MOVE.match(code):
@@ -158,6 +176,11 @@ class _Checked:
                 raise InputError(f"{where}: {axis}{text} is not a number a printer can use")
             if axis not in self.reach:
                 continue
+            if self.relative is None:
+                raise InputError(
+                    f"{where}: whether {axis}{text} is absolute or relative is not known after a "
+                    f"macro; write G90 or G91 before it"
+                )
             if self.relative:
                 before = self.at[axis]
                 if before is None and axis == "Z" and value >= 0:

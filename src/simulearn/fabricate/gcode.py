@@ -1,8 +1,8 @@
 """Writing a print as G-code: header, heating, moves layer by layer, progress, and an end.
 
 The dialect is what Marlin, RepRapFirmware, Klipper and their kin agree on: G0 and G1, one command a
-line, no arcs. What must not go wrong is not left to the profile: units, the way E is counted, the
-wait for a hot nozzle before the first move, and heaters off at the end are always written.
+line, no arcs. What must not go wrong is not left to the profile: units and modes before its start
+code and after it, the wait for a hot nozzle, and heaters off at the end are always written.
 """
 
 from collections.abc import Iterator, Sequence
@@ -66,10 +66,11 @@ def gcode(
     frame = Frame(
         low=tuple(bounds[0].tolist()),
         high=tuple(bounds[1].tolist()),
-        top=float(moves.places[-1, 2]),
+        last=tuple(moves.places[-1].tolist()),
     )
     lines = [
         *_header(path, bounds, estimated, settings, printer, notes, warnings),
+        *_modes(printer),
         *filled(printer, settings, frame, "start"),
         *_before(settings, printer),
         *_body(path, moves, durations, settings, printer),
@@ -146,11 +147,17 @@ def _header(
         yield f"; warning: {_plain(warning.message)}"
 
 
-def _before(settings: Settings, printer: Printer) -> Iterator[str]:
-    yield "; SimuLearn: units, extruder, heat"
+def _modes(printer: Printer) -> Iterator[str]:
+    """Yield what sets millimetres, absolute coordinates and how E is counted."""
+    yield "; SimuLearn: units and modes"
     yield "G21"
     yield "G90"
     yield "M83" if printer.extruder.extrusion == "relative" else "M82"
+
+
+def _before(settings: Settings, printer: Printer) -> Iterator[str]:
+    """Yield what stands between the start code and the first move."""
+    yield from _modes(printer)  # again, since the start code may have set others
     yield "G92 E0"
     if settings.bed > 0:
         yield f"M190 S{settings.bed:g}"

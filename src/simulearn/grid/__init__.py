@@ -1,32 +1,35 @@
 """The grid that a designer draws: its type, outline, rules, file and library."""
 
 from simulearn.errors import Message
+from simulearn.grid.checks import Checks, TrainingRange, check_designs
 from simulearn.grid.cleaning import clean
 from simulearn.grid.designs import Rules, draw, draw_valid
-from simulearn.grid.grid import Grid
+from simulearn.grid.grid import Grid, Support
 from simulearn.grid.gridfile import grid_from_dict, grid_to_dict, read_grid, write_grid
 from simulearn.grid.lattice import drop_beams, lattice
 from simulearn.grid.library import library, make
-from simulearn.grid.outline import JointOutline, Outline, beams_at, joint_outline, outline
+from simulearn.grid.outline import CornerTopology, Outline, corner_topology, outline
 from simulearn.grid.sketch import sketch
-from simulearn.grid.validation import TrainingRange, Validation, validate
+from simulearn.grid.validation import Validation, validate
 
 __all__ = [
+    "Checks",
+    "CornerTopology",
     "Grid",
-    "JointOutline",
     "Message",
     "Outline",
     "Rules",
+    "Support",
     "TrainingRange",
     "Validation",
-    "beams_at",
+    "check_designs",
     "clean",
+    "corner_topology",
     "draw",
     "draw_valid",
     "drop_beams",
     "grid_from_dict",
     "grid_to_dict",
-    "joint_outline",
     "lattice",
     "library",
     "make",

@@ -4,11 +4,31 @@ A grid holds numbers only; its shape is in `outline`, its rules in `validation`,
 `gridfile`.
 """
 
+import hashlib
+import os
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from simulearn.errors import InputError
+from simulearn.grid.arrays import KEYS, index, indices, numbers, shown
+
+
+@dataclass(frozen=True)
+class Support:
+    """The part of a grid that is held in place.
+
+    Attributes:
+        joint: index of the joint.
+        lower: where the held part begins, in thicknesses above the middle plane.
+        upper: where it ends: at 0, the lower half is held.
+    """
+
+    joint: int
+    lower: float = -0.5
+    upper: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +42,11 @@ class Grid:
             + puts the active part on the top half, - on the bottom half.
         fixed: index of the joint whose lower half is held.
         material: name of the material system, or the path of its TOML file.
+
+    Raises:
+        InputError: an array has another shape, as with joints in space, or holds what is not a
+            finite number; an index is not a whole number (1.0 is one); the message names the
+            entry. Whether indices exist and ratios are in range, `validate` says.
     """
 
     joints: NDArray[np.float64]
@@ -36,20 +61,27 @@ class Grid:
         beams: ArrayLike,
         actuators: ArrayLike,
         fixed: int,
-        material: str = "pla-hot-water",
+        material: str | os.PathLike[str] = "pla-hot-water",
     ) -> None:
-        put = lambda name, value: object.__setattr__(self, name, value)  # noqa: E731
-        put("joints", np.array(joints, dtype=np.float64).reshape(-1, 2))
-        put("beams", np.array(beams, dtype=np.int64).reshape(-1, 2))
-        put("actuators", np.array(actuators, dtype=np.float64).reshape(-1))
-        put("fixed", int(fixed))
-        put("material", str(material))
+        if not isinstance(material, (str, os.PathLike)) or not str(material):
+            text = f"material is {shown(material)}; {KEYS['material']}"
+            raise InputError(text, "material", "material")
+        own = self.__dict__  # the class is frozen
+        own["joints"] = numbers(joints, "joints", 2)
+        own["beams"] = indices(beams, "beams")
+        own["actuators"] = numbers(actuators, "actuators")
+        own["fixed"] = index(fixed, "fixed")
+        own["material"] = str(material)
         for array in (self.joints, self.beams, self.actuators):
             array.flags.writeable = False
 
-    @cached_property
+    @property
     def centred(self) -> "Grid":
         """The same grid moved so that its fixed joint is the origin."""
+        return self._moved if self.joints[self.fixed].any() else self
+
+    @cached_property
+    def _moved(self) -> "Grid":
         joints = self.joints - self.joints[self.fixed]
         return Grid(joints, self.beams, self.actuators, self.fixed, self.material)
 
@@ -57,3 +89,22 @@ class Grid:
     def dimension(self) -> float:
         """Largest distance from the fixed joint to another joint, mm."""
         return float(np.linalg.norm(self.joints - self.joints[self.fixed], axis=1).max())
+
+    @property
+    def support(self) -> Support:
+        """What is held in place: the lower half of the fixed joint."""
+        return Support(self.fixed)
+
+    @cached_property
+    def digest(self) -> str:
+        """SHA-256 of all that the grid holds, in hexadecimal digits.
+
+        The material counts by its name; `Material.digest` is that of its contents.
+        """
+        text = f"simulearn.grid/1 {len(self.joints)} {len(self.beams)} {self.fixed} {self.material}"
+        digest = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
+        # Adding 0.0 makes 0.0 of -0.0.
+        digest.update((self.joints + 0.0).astype("<f8").tobytes())
+        digest.update(self.beams.astype("<i8").tobytes())
+        digest.update((self.actuators + 0.0).astype("<f8").tobytes())
+        return digest.hexdigest()

@@ -8,6 +8,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
+from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
+from simulearn.grid.arrays import shown
 from simulearn.grid.grid import Grid
 from simulearn.grid.structure import structure_errors
 
@@ -28,14 +30,7 @@ class _GridFile(BaseModel):
     material: Annotated[str, Field(min_length=1)] = "pla-hot-water"
 
 
-KEYS = {
-    "schema": f'this program reads "{SCHEMA}"',
-    "joints": "joints are a list of [x, y], finite numbers in mm",
-    "beams": "beams are a list of [i, j], indices of joints counted from 0",
-    "actuators": "actuators are a list of ratios in [-1, 1], one for each beam",
-    "fixed": "the fixed joint is an index counted from 0",
-    "material": "a material is the name of a material system or the path of its TOML file",
-}
+KEYS = {"schema": f'this program reads "{SCHEMA}"', **KEYS_OF_GRID}
 
 
 def read_grid(path: Path | str) -> Grid:
@@ -84,7 +79,7 @@ def grid_from_dict(data: Any) -> Grid:
     except ValidationError as error:
         raise InputError(_line(error.errors(include_url=False)[0])) from error
     if not file.material.isprintable():
-        raise InputError(f"material is {_shown(file.material)}; {KEYS['material']}")
+        raise InputError(f"material is {shown(file.material)}; {KEYS['material']}")
     grid = Grid(file.joints, file.beams, file.actuators, file.fixed, file.material)
     for wrong in structure_errors(grid):
         raise InputError(wrong.message)
@@ -112,7 +107,7 @@ def _no_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(data) < len(pairs):
         keys = [key for key, _ in pairs]
         twin = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f"the key {_shown(twin)} occurs twice")
+        raise ValueError(f"the key {shown(twin)} occurs twice")
     return data
 
 
@@ -120,20 +115,11 @@ def _line(error: Any) -> str:
     """Return one of pydantic's errors in our words."""
     place, value = error["loc"], error["input"]
     if not place:
-        return f"is {_shown(value)}; a grid is an object with the keys {', '.join(KEYS)}"
+        return f"is {shown(value)}; a grid is an object with the keys {', '.join(KEYS)}"
     key = str(place[0])
     if error["type"] == "missing":
         return f"{key} is missing; {KEYS[key]}"
     if key not in KEYS:
-        return f"{_shown(place[0])} is not a key of a grid; its keys are {', '.join(KEYS)}"
+        return f"{shown(place[0])} is not a key of a grid; its keys are {', '.join(KEYS)}"
     where = key + "".join(f"[{k}]" for k in place[1:])
-    return f"{where} is {_shown(value)}; {KEYS[key]}"
-
-
-def _shown(value: Any, most: int = 40) -> str:
-    """Return a value as short, plain text on one line."""
-    try:
-        text = json.dumps(value)
-    except (TypeError, ValueError, RecursionError):
-        text = f"a {type(value).__name__}"
-    return text if len(text) <= most else text[: most - 3] + "..."
+    return f"{where} is {shown(value)}; {KEYS[key]}"

@@ -1,31 +1,40 @@
 """The outlines of joints and beams in the plane.
 
-A joint is a quadrilateral with one side for each of four directions. Where fewer than four beams
-meet, the gaps between neighbouring beams are divided into equal parts, a part at a time where
-the parts are largest, until there are four directions. The corner between two neighbouring
-directions lies where the left edge of the first meets the right edge of the second. A beam runs
+A joint is a quadrilateral; `grid.corners` says between which beams its corners lie. A corner lies
+where the left edge of the beam before it meets the right edge of the beam after it. A beam runs
 from the side of one joint to the side of another: its long edges lie half a width to either side
 of its axis, its ends are oblique.
 """
 
 from dataclasses import dataclass
-from math import atan2, cos, degrees, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.grid.corners import (
+    NEXT,
+    CornerTopology,
+    Indices,
+    Numbers,
+    corner_topology,
+    corners,
+    directions,
+    halves_at_joints,
+)
 from simulearn.grid.grid import Grid
 from simulearn.material import Section
 
-Point = tuple[float, float]
-End = tuple[int, int]  # (beam, 0) is the start of a beam, (beam, 1) its end
+__all__ = ["CornerTopology", "Outline", "Outlines", "corner_topology", "outline", "outlines"]
 
-# Angles closer than this are equal: far above rounding, far below what anyone draws (radians).
-TIE = 1e-9
 # Sharpest and bluntest corner of a joint that still makes sound bricks (degrees).
 SHARPEST = 15.0
 BLUNTEST = 180.0 - SHARPEST
+
+LAST = np.array([3, 0, 1, 2])
+# A beam's corners from the side that it meets, [start, end] x [right, left]: a half-beam leaves
+# with the side's first corner to its right; at a beam's end that looks back along the beam.
+FACES = np.array([[0, 1], [1, 0]])
 
 
 @dataclass(frozen=True)
@@ -40,29 +49,61 @@ class Outline:
         beams: (B, 2, 2, 2) [start, end] x [right, left] x (x, y), where left is z x (start -> end).
     """
 
-    joints: NDArray[np.float64]
-    sides: NDArray[np.int64]
-    beams: NDArray[np.float64]
+    joints: Numbers
+    sides: Indices
+    beams: Numbers
 
 
 @dataclass(frozen=True)
-class JointOutline:
-    """Corners of one joint.
+class Outlines:
+    """The outlines of T designs of one topology, sound or not.
 
     Attributes:
-        corners: four (x, y), mm, in the order of `Outline.joints`.
-        sides: the side that each beam end meets.
+        joints: (T, J, 4, 2) mm, corners as in `Outline`.
+        sides: (T, B, 2) as in `Outline`.
+        beams: (T, B, 2, 2, 2) mm, as in `Outline`.
+        sound: (T, J) whether a joint has an outline; elsewhere the numbers mean nothing.
+        ends: (B, 2) joint indices.
+        meeting: (J, 4) the first four half-beams at each joint; -1 fills up.
+        valence: (J,) number of half-beams at each joint.
+        points: (T, J, 4) whether a half-beam of `meeting` has no length.
+        order: (T, J, 4) half-beams at each joint, by rising angle; -1 fills up.
+        ties: (T, J, 4) whether a half-beam of `order` leaves in the direction of the next one.
+        inside: (T, J, 4) degrees, angles at the corners.
     """
 
-    corners: list[Point]
-    sides: dict[End, int]
+    joints: Numbers
+    sides: Indices
+    beams: Numbers
+    sound: NDArray[np.bool_]
+    ends: Indices
+    meeting: Indices
+    valence: Indices
+    points: NDArray[np.bool_]
+    order: Indices
+    ties: NDArray[np.bool_]
+    inside: Numbers
 
-    def face(self, end: End) -> tuple[Point, Point]:
-        """Return the two corners (mm) that a beam end meets, right and left of the beam."""
-        side = self.sides[end]
-        a, b = self.corners[side], self.corners[(side + 1) % 4]
-        # Looking outwards from a beam's end joint is looking back along the beam.
-        return (b, a) if end[1] else (a, b)
+    def fault(self, design: int, joint: int) -> str:
+        """Return why a joint of a design has no outline."""
+        beams = len(self.ends)
+        valence = int(self.valence[joint])
+        if not 1 <= valence <= 4:
+            return f"joint {joint} has {valence} beams; a joint takes 2 to 4"
+        if (points := self.points[design, joint]).any():
+            end, beam = divmod(int(self.meeting[joint, points.argmax()]), beams)
+            other = self.ends[beam, 1 - end]
+            return f"joint {joint} lies where joint {other} lies; beam {beam} is a point"
+        if (ties := self.ties[design, joint]).any():
+            slot = int(ties.argmax())
+            two = self.order[design, joint, [slot, (slot + 1) % valence]] % beams
+            return f"beams {min(two)} and {max(two)} leave joint {joint} in one direction"
+        inside = self.inside[design, joint]
+        return (
+            f"joint {joint} has a corner of {inside[_unsound(inside).argmax()] % 360:.1f} "
+            f"degrees; its beams must leave it so that each corner has "
+            f"{SHARPEST:g} to {BLUNTEST:g}"
+        )
 
 
 def outline(grid: Grid, section: Section) -> Outline:
@@ -75,106 +116,58 @@ def outline(grid: Grid, section: Section) -> Outline:
     Raises:
         InputError: a joint has no sound outline; the message names the joint.
     """
-    joints = [joint_outline(grid, section, k, meeting) for k, meeting in enumerate(beams_at(grid))]
-    ends = [
-        [(joints[joint], (beam, end)) for end, joint in enumerate(pair)]
-        for beam, pair in enumerate(grid.beams.tolist())
-    ]
-    return Outline(
-        joints=np.array([joint.corners for joint in joints]).reshape(-1, 4, 2),
-        sides=np.array(
-            [[joint.sides[end] for joint, end in pair] for pair in ends], dtype=np.int64
-        ).reshape(-1, 2),
-        beams=np.array([[joint.face(end) for joint, end in pair] for pair in ends]).reshape(
-            -1, 2, 2, 2
-        ),
-    )
+    one = outlines(grid.beams, grid.joints[None], section.width)
+    if not one.sound.all():
+        joint = int(one.sound[0].argmin())
+        raise InputError(one.fault(0, joint), "joint-outline", f"joint {joint}")
+    return Outline(one.joints[0], one.sides[0], one.beams[0])
 
 
-def beams_at(grid: Grid) -> list[list[End]]:
-    """Return for each joint the beams that meet there as (beam, end), end 0 being its start."""
-    meeting: list[list[End]] = [[] for _ in grid.joints]
-    for beam, ends in enumerate(grid.beams.tolist()):
-        for end, joint in enumerate(ends):
-            meeting[joint].append((beam, end))
-    return meeting
-
-
-def joint_outline(grid: Grid, section: Section, joint: int, meeting: list[End]) -> JointOutline:
-    """Return the outline of one joint.
+def outlines(
+    beams: Indices, joints: Numbers, width: float, stay: NDArray[np.bool_] | None = None
+) -> Outlines:
+    """Return the outlines of designs of one topology; `Outlines.sound` says where there are none.
 
     Args:
-        grid: the grid.
-        section: section of its beams.
-        joint: index of the joint.
-        meeting: its beams, as `beams_at` gives them.
-
-    Raises:
-        InputError: no beam or more than four meet here, two leave in one direction, or the
-            quadrilateral is not convex or too sharp.
+        beams: (B, 2) joint indices, start and end.
+        joints: (T, J, 2) mm.
+        width: width of the beams, mm.
+        stay: (B,) the beams that count, all unless given; the numbers of the others mean nothing.
     """
-    if not 1 <= len(meeting) <= 4:
-        raise InputError(f"joint {joint} has {len(meeting)} beams; a joint takes 2 to 4")
-    x, y = grid.joints[joint].tolist()
-    leaving = []
-    for beam, end in meeting:
-        other = int(grid.beams[beam, 1 - end])
-        u, v = grid.joints[other].tolist()
-        if u == x and v == y:
-            raise InputError(f"joint {joint} lies where joint {other} lies; beam {beam} is a point")
-        leaving.append((atan2(v - y, u - x), (beam, end)))
-    leaving.sort()
-    angles = [angle for angle, _ in leaving]
-    gaps = [b - a for a, b in zip(angles, [*angles[1:], angles[0] + 2 * pi], strict=True)]
-    beams = [beam for _, (beam, _) in leaving]
-    for k, gap in enumerate(gaps):
-        if gap < TIE:
-            a, b = sorted((beams[k], beams[(k + 1) % len(beams)]))
-            raise InputError(f"beams {a} and {b} leave joint {joint} in one direction")
+    trials, count = joints.shape[:2]
+    meeting, valence = halves_at_joints(beams, count, stay)
+    direction = directions(beams, joints)
+    at = corners(meeting, valence, direction, len(beams))
+    with np.errstate(divide="ignore", invalid="ignore"):  # where two beams leave in one direction
+        reach = width / 2 / np.sin(at.opening / 2)
+        corner = reach * np.exp(1j * at.bisector)  # x + i y, seen from the joint
+        turn = (corner[..., LAST] - corner) * np.conj(corner[..., NEXT] - corner)
+        inside = np.degrees(np.arctan2(turn.imag, turn.real))
+    place = corner.view(np.float64).reshape(trials, count, 4, 2) + joints[:, :, None]
+    point = np.zeros((trials, 2 * len(beams) + 1), bool)
+    np.equal(direction, 0, out=point[:, :-1])
+    points = point[:, meeting]
+    sound = ~(points | at.ties | _unsound(inside)).any(axis=-1)
+    sound &= (valence > 0) & (valence < 5)
 
-    half = section.width / 2
-    corners: list[Point] = []
-    side: dict[End, int] = {}
-    for (angle, leaves), gap, n in zip(leaving, gaps, _parts(gaps, beams), strict=True):
-        side[leaves] = len(corners) - 1  # begins at the corner before
-        for k in range(n):
-            bisector = angle + gap / n * (k + 0.5)
-            reach = half / sin(gap / n / 2)
-            corners.append((reach * cos(bisector), reach * sin(bisector)))
-    first = min(range(4), key=lambda k: (atan2(*corners[k][::-1]) + TIE) % (2 * pi))
-    corners = corners[first:] + corners[:first]
-    _check(joint, corners)
-    return JointOutline(
-        [(x + u, y + v) for u, v in corners],
-        {end: (k - first) % 4 for end, k in side.items()},
+    sides = at.topology.side.swapaxes(1, 2)
+    joint = np.arange(0, trials * count, count)[:, None, None] + beams
+    faces = (sides[..., None] + FACES) % 4 + 4 * joint[..., None]
+    return Outlines(
+        joints=place,
+        sides=sides,
+        beams=place.reshape(-1, 2).take(faces, axis=0),
+        sound=sound,
+        ends=beams,
+        meeting=meeting,
+        valence=valence,
+        points=points,
+        order=at.order,
+        ties=at.ties,
+        inside=inside,
     )
 
 
-def _parts(gaps: list[float], beams: list[int]) -> list[int]:
-    """Return into how many parts each gap is divided; `beams[k]` is the beam before gap k.
-
-    Equal parts: the gap in fewer parts first, then the one between the beams first in number.
-    Neither depends on how the grid is turned or mirrored.
-    """
-    parts = [1] * len(gaps)
-    between = [sorted((b, beams[(k + 1) % len(beams)])) for k, b in enumerate(beams)]
-    while sum(parts) < 4:
-        largest = max(gap / n for gap, n in zip(gaps, parts, strict=True)) - TIE
-        ties = [k for k, gap in enumerate(gaps) if gap / parts[k] >= largest]
-        parts[min(ties, key=lambda k: (parts[k], between[k]))] += 1
-    return parts
-
-
-def _check(joint: int, corners: list[Point]) -> None:
-    """Raise InputError unless the corners make a convex quadrilateral without sharp corners."""
-    for k, (x, y) in enumerate(corners):
-        (px, py), (nx, ny) = corners[k - 1], corners[(k + 1) % 4]
-        back, on = (px - x, py - y), (nx - x, ny - y)
-        inside = degrees(
-            atan2(on[0] * back[1] - on[1] * back[0], on[0] * back[0] + on[1] * back[1])
-        )
-        if not SHARPEST <= inside <= BLUNTEST:
-            raise InputError(
-                f"joint {joint} has a corner of {inside % 360:.1f} degrees; its beams must leave "
-                f"it so that each corner has {SHARPEST:g} to {BLUNTEST:g}"
-            )
+def _unsound(inside: Numbers) -> NDArray[np.bool_]:
+    """Return which angles (degrees) at corners are too sharp, too blunt or no numbers."""
+    return ~((inside >= SHARPEST) & (inside <= BLUNTEST))

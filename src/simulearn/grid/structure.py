@@ -1,7 +1,7 @@
-"""What must hold before a grid has a shape at all: numbers that are numbers, indices that exist.
+"""What must hold before a grid has a shape at all: numbers in range, indices that exist.
 
-The file reader and validation both ask here; the messages name the file's keys, for a grid in
-memory has the same ones.
+The file reader and validation both use these rules; the messages name the file's keys, which are
+those of a grid in memory, too.
 """
 
 import numpy as np
@@ -11,44 +11,55 @@ from simulearn.grid.grid import Grid
 
 # Far beyond any printer; keeps squares and products of coordinates from overflowing (mm).
 FARTHEST = 1e5
+# Some fifty times what anyone prints. Validation takes a second and some hundred MB for so many.
+MOST_JOINTS = 20_000
+MOST_BEAMS = 2 * MOST_JOINTS  # no more than four meet at a joint
 
 
 def structure_errors(grid: Grid) -> list[Message]:
-    """Return what is wrong with the numbers and indices of a grid, the first first."""
-    found = []
-
-    def add(code: str, where: str, message: str) -> None:
-        found.append(Message(code, where, message))
-
+    """Return what is wrong with the numbers and indices of a grid, in the order of its keys."""
     joints, beams, actuators = len(grid.joints), len(grid.beams), len(grid.actuators)
+    for count, most, name in ((joints, MOST_JOINTS, "joints"), (beams, MOST_BEAMS, "beams")):
+        if count > most:
+            text = f"the grid has {count} {name}; at most {most} can be computed"
+            return [Message("too-large", "grid", text)]
+    errors = []
     if actuators != beams:
-        add(
-            "actuator-count",
-            "grid",
-            f"actuators has {actuators} ratios for {beams} beams; there is one for each beam",
-        )
-    for k, place in enumerate(grid.joints.tolist()):
-        if not all(abs(x) <= FARTHEST for x in place):  # NaN compares false
-            add(
-                "joint-place",
-                f"joint {k}",
-                f"joints[{k}] is {place}; coordinates lie within {FARTHEST:g} mm of the origin",
-            )
-    seen: dict[frozenset[int], int] = {}
-    for k, (i, j) in enumerate(grid.beams.tolist()):
-        name, where = f"beams[{k}] is [{i}, {j}]", f"beam {k}"
-        if not (0 <= i < joints and 0 <= j < joints):
-            add("beam-index", where, f"{name}; joints are numbered 0 to {joints - 1}")
-        elif i == j:
-            add("beam-to-itself", where, f"{name}; a beam joins two different joints")
-        elif (first := seen.setdefault(frozenset((i, j)), k)) != k:
-            add("beam-duplicate", where, f"{name}; beam {first} joins the same two joints")
-    for k in np.flatnonzero(~(abs(grid.actuators) <= 1)).tolist():
-        add(
-            "actuator-ratio",
-            f"beam {k}",
-            f"actuators[{k}] is {grid.actuators[k]:g}; a ratio lies in [-1, 1]",
-        )
+        text = f"actuators has {actuators} ratios for {beams} beams; there is one for each beam"
+        errors.append(Message("actuator-count", "grid", text))
+    for k in np.flatnonzero((abs(grid.joints) > FARTHEST).any(axis=1)).tolist():
+        text = f"coordinates lie within {FARTHEST:g} mm of the origin"
+        place = f"joints[{k}] is {grid.joints[k].tolist()}"
+        errors.append(Message("joint-place", f"joint {k}", f"{place}; {text}"))
+    errors += _beam_errors(grid)
+    for k in np.flatnonzero(abs(grid.actuators) > 1).tolist():
+        text = f"actuators[{k}] is {grid.actuators[k]:g}; a ratio lies in [-1, 1]"
+        errors.append(Message("actuator-ratio", f"beam {k}", text))
     if not 0 <= grid.fixed < joints:
-        add("fixed-index", "grid", f"fixed is {grid.fixed}; joints are numbered 0 to {joints - 1}")
-    return found
+        text = f"fixed is {grid.fixed}; joints are numbered 0 to {joints - 1}"
+        errors.append(Message("fixed-index", "grid", text))
+    return errors
+
+
+def _beam_errors(grid: Grid) -> list[Message]:
+    """Return the errors of beams: joints that do not exist, one joint twice, two beams twice."""
+    joints = len(grid.joints)
+    low, high = grid.beams.min(axis=1), grid.beams.max(axis=1)
+    outside, loop = (low < 0) | (high >= joints), low == high
+    key = np.where(outside | loop, -1 - np.arange(len(low)), low * joints + high)
+    rising = np.sort(key)
+    if not len(rising) or (rising[0] >= 0 and (rising[1:] > rising[:-1]).all()):
+        return []
+    _, first, pair = np.unique(key, return_index=True, return_inverse=True)
+    first = first[pair]  # the first beam between the same two joints
+    wrong = np.flatnonzero((key < 0) | (first != np.arange(len(first))))
+    errors = []
+    for k, (i, j) in zip(wrong.tolist(), grid.beams[wrong].tolist(), strict=True):
+        if outside[k]:
+            code, text = "beam-index", f"joints are numbered 0 to {joints - 1}"
+        elif loop[k]:
+            code, text = "beam-to-itself", "a beam joins two different joints"
+        else:
+            code, text = "beam-duplicate", f"beam {first[k]} joins the same two joints"
+        errors.append(Message(code, f"beam {k}", f"beams[{k}] is [{i}, {j}]; {text}"))
+    return errors

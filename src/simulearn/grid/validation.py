@@ -1,57 +1,55 @@
-"""The rules of a design: what cannot be printed and simulated, and what had better be looked at.
+"""The rules of a design: what cannot be printed and simulated, and what is unusual.
 
 Errors forbid: the grid has no sound outline, or parts of it collide, or an actuator is too short
-to work. Warnings tell: a length is unusual, or something dangles and is removed. A grid without
-errors can be meshed.
+to work. Warnings do not: a length is unusual, or something dangles and is removed. A grid without
+errors can be meshed. The rules themselves are in `grid.structure` and `grid.checks`.
 
 Rules and limits: Yang et al., SimuLearn, UIST 2020, Figure 15, and the authors' published tool.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from math import hypot
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import InputError, Message
-from simulearn.grid.cleaning import fixed_removed, kept, removals
+from simulearn.errors import Message
+from simulearn.grid.checks import (
+    ONE_PLACE,
+    SHORTEST_EDGE,
+    Lengths,
+    Topology,
+    TrainingRange,
+    coincident,
+    collisions,
+    lengths,
+    outside,
+    too_short,
+    topology,
+    unusual,
+    usual_length,
+)
+from simulearn.grid.cleaning import fixed_removed, removals
 from simulearn.grid.grid import Grid
-from simulearn.grid.outline import JointOutline, beams_at, joint_outline
-from simulearn.grid.overlap import overlaps
+from simulearn.grid.outline import Outlines, outlines
 from simulearn.grid.structure import structure_errors
 from simulearn.material import Material
 from simulearn.material.material import Limits
 
-# Lengths this close are equal, so that a length at its limit passes whatever rounding did (mm).
-ROUNDING = 1e-6
-# Joints closer than this are at one place (mm).
-ONE_PLACE = 1e-3
-# The shorter long edge of a beam must leave something between its joints (mm).
-SHORTEST_EDGE = 1.0
+Mask = NDArray[np.bool_]
 
-
-@dataclass(frozen=True)
-class TrainingRange:
-    """What a learned model has seen in training, each as (least, most), mm.
-
-    Attributes:
-        dimension: largest distance from the fixed joint to another joint.
-        beam_length: length of a beam between the centres of its joints.
-    """
-
-    dimension: tuple[float, float]
-    beam_length: tuple[float, float]
+# Of joints at one place, and of parts that overlap, no more are named.
+MOST_NAMED = 1000
 
 
 @dataclass(frozen=True)
 class Validation:
-    """What validation has to say.
+    """The errors and warnings about a design.
 
     Attributes:
-        errors: that forbid.
-        warnings: that do not.
+        errors: what forbids it.
+        warnings: what does not.
         net_lengths: mm, of the beams that stay and have an outline, by their numbers.
     """
 
@@ -84,166 +82,137 @@ def validate(
         grid: the design; joints and beams keep its numbers in the messages.
         material: its material system, for section and limits.
         limits: other limits than the material's.
-        training: what the model that will answer has seen; its limits replace the material's.
+        training: the grids that the model that will answer was trained on; its limits replace
+            the material's.
     """
     if wrong := structure_errors(grid):
         return Validation(tuple(wrong), ())
     limits = limits or material.limits
-    joints, beams = kept(grid)
-    errors = list(_layout(grid, joints, beams))
-    in_place = all(error.code != "joints-coincide" for error in errors)
-    shapes: dict[int, JointOutline] = {}
-    for k, meeting in enumerate(beams_at(grid)):
-        staying = [end for end in meeting if beams[end[0]]]
-        if not staying:
-            continue
-        try:
-            shapes[k] = joint_outline(grid, material.section, k, staying)
-        except InputError as error:
-            code = "joint-valence" if len(staying) > 4 else "joint-outline"
-            errors.append(Message(code, f"joint {k}", str(error)))
-    quads = {
-        b: np.array([shapes[i].face((b, 0)), shapes[j].face((b, 1))])
-        for b, (i, j) in enumerate(grid.beams.tolist())
-        if beams[b] and i in shapes and j in shapes
-    }
-    lengths = {b: _lengths(grid, b, quad) for b, quad in quads.items()}
-    warnings = removals(grid)
-    for b, measures in lengths.items():
-        errors += _beam_errors(grid, b, measures, limits)
-        warnings += _beam_warnings(b, measures, limits, training)
-    if in_place:
-        roomy = {b: q for b, q in quads.items() if lengths[b][2] >= SHORTEST_EDGE}
-        errors += _collisions(shapes, roomy)
-        if training is not None:
-            warnings += _size(grid, joints, training)
-    net = {b: measures[1] for b, measures in lengths.items()}
+    at = topology(grid)
+    joints = grid.joints[None]
+    coinciding = coincident(joints, MOST_NAMED)[:, 1:].tolist()
+    errors = [*_coincidences(grid, coinciding), *_layout(grid, at)]
+    shape = outlines(grid.beams, joints, material.section.width, at.beams)
+    for k in np.flatnonzero(at.joints & ~shape.sound[0]).tolist():
+        code = "joint-valence" if shape.valence[k] > 4 else "joint-outline"
+        errors.append(Message(code, f"joint {k}", shape.fault(0, k)))
+    measured = lengths(grid.beams, joints, shape)
+    faced = at.beams & shape.sound[0, grid.beams].all(axis=1)  # with an outline at both ends
+    crowded = faced & (measured.edge[0] < SHORTEST_EDGE)
+    errors += _beam_errors(grid, measured, faced, crowded, limits)
+    warnings = [*removals(grid), *_beam_warnings(measured, faced, limits, training)]
+    if not coinciding:
+        errors += _collisions(shape, faced & ~crowded)
+        if training is not None and at.beams.any():
+            warnings += _size(grid, at, training)
+    net = {b: float(measured.net[0, b]) for b in np.flatnonzero(faced).tolist()}
     return Validation(tuple(errors), tuple(warnings), net)
 
 
-def _layout(grid: Grid, joints: NDArray[np.bool_], beams: NDArray[np.bool_]) -> Iterator[Message]:
-    """Yield errors of the grid as a whole: its places and its connections."""
-    apart = np.linalg.norm(grid.joints[:, None] - grid.joints[None], axis=2)
-    for i, j in np.argwhere(np.triu(apart < ONE_PLACE, k=1)).tolist():
+def _coincidences(grid: Grid, pairs: list[list[int]]) -> Iterator[Message]:
+    """Yield an error for each two joints at one place."""
+    for i, j in pairs:
+        apart = np.linalg.norm(grid.joints[i] - grid.joints[j])
         yield Message(
             "joints-coincide",
             f"joint {j}",
-            f"joint {j} lies where joint {i} lies, {apart[i, j]:.3g} mm apart; "
+            f"joint {j} lies where joint {i} lies, {apart:.3g} mm apart; "
             f"joints lie at least {ONE_PLACE:g} mm apart",
         )
+
+
+def _layout(grid: Grid, at: Topology) -> Iterator[Message]:
+    """Yield errors of the connections of a grid."""
     if not len(grid.beams):
         yield Message("no-beams", "grid", "the grid has 0 beams; it needs some that close a loop")
         return
-    if not beams.any():
+    if not at.beams.any():
         yield Message(
             "no-beams",
             "grid",
-            f"none of the {len(beams)} beams closes a loop, so all of them dangle and are removed",
+            f"none of the {len(grid.beams)} beams closes a loop, "
+            "so all of them dangle and are removed",
         )
         return
-    if not joints[grid.fixed]:
+    if not at.joints[grid.fixed]:
         yield Message("fixed-removed", f"joint {grid.fixed}", fixed_removed(grid))
-    parts = _parts(grid)
-    if len(parts) > 1:
-        others = ", ".join(str(k) for k in sorted(set().union(*parts[1:])))
+    if len(at.parts) > 1:
+        others = ", ".join(str(k) for k in sorted(set().union(*at.parts[1:])))
         yield Message(
             "disconnected",
             "grid",
-            f"the grid is in {len(parts)} parts; no beam leads to joints {others}",
+            f"the grid is in {len(at.parts)} parts; no beam leads to joints {others}",
         )
-
-
-def _parts(grid: Grid) -> list[set[int]]:
-    """Return the sets of joints that beams connect, the fixed joint's first."""
-    parts: list[set[int]] = []
-    for pair in grid.beams.tolist():
-        meeting = [part for part in parts if not part.isdisjoint(pair)]
-        parts = [part for part in parts if part.isdisjoint(pair)]
-        parts.append(set(pair).union(*meeting))
-    return sorted(parts, key=lambda part: (grid.fixed not in part, min(part)))
-
-
-def _lengths(grid: Grid, beam: int, quad: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Return a beam's length centre to centre, its net length and its shorter edge, mm."""
-    (x, y), (u, v) = grid.joints[grid.beams[beam]].tolist()
-    length = hypot(u - x, v - y)
-    right, left = ((quad[1] - quad[0]) @ (u - x, v - y) / length).tolist()
-    # The middle of a joint's side lies on the axis.
-    return length, (right + left) / 2, min(right, left)
 
 
 def _beam_errors(
-    grid: Grid, beam: int, measures: tuple[float, float, float], limits: Limits
+    grid: Grid, measured: Lengths, faced: Mask, crowded: Mask, limits: Limits
 ) -> Iterator[Message]:
-    """Yield errors of one beam: no room between its joints, or too short an actuator."""
-    _, net, edge = measures
-    if edge < SHORTEST_EDGE:
-        i, j = grid.beams[beam]
-        yield Message(
-            "joints-too-close",
-            f"beam {beam}",
-            f"beam {beam} is left an edge of {edge:.2f} mm between joints {i} and {j}; "
-            f"each edge needs at least {SHORTEST_EDGE:g} mm",
-        )
-        return
-    ratio = abs(float(grid.actuators[beam]))
-    if ratio and ratio * net < limits.actuator_length - ROUNDING:
-        yield Message(
-            "actuator-short",
-            f"beam {beam}",
-            f"the actuator of beam {beam} is {ratio * net:.2f} mm long (ratio {ratio:g} of "
-            f"{net:.2f} mm); an actuator is at least {limits.actuator_length:g} mm, or 0",
-        )
+    """Yield errors of beams: no room between the joints, or too short an actuator.
+
+    Args:
+        grid: the design.
+        measured: lengths of its beams.
+        faced: (B,) the beams with an outline at both ends.
+        crowded: (B,) those of them without room between their joints.
+        limits: least and most lengths.
+    """
+    short = faced & too_short(grid.actuators, measured.net[0], limits)
+    for b in np.flatnonzero(crowded | short).tolist():
+        net, ratio = measured.net[0, b], abs(grid.actuators[b])
+        if crowded[b]:
+            i, j = grid.beams[b]
+            yield Message(
+                "joints-too-close",
+                f"beam {b}",
+                f"beam {b} is left an edge of {measured.edge[0, b]:.2f} mm between joints "
+                f"{i} and {j}; each edge needs at least {SHORTEST_EDGE:g} mm",
+            )
+        else:
+            yield Message(
+                "actuator-short",
+                f"beam {b}",
+                f"the actuator of beam {b} is {ratio * net:.2f} mm long (ratio {ratio:g} of "
+                f"{net:.2f} mm); an actuator is at least {limits.actuator_length:g} mm, or 0",
+            )
 
 
 def _beam_warnings(
-    beam: int,
-    measures: tuple[float, float, float],
-    limits: Limits,
-    training: TrainingRange | None,
+    measured: Lengths, faced: Mask, limits: Limits, training: TrainingRange | None
 ) -> Iterator[Message]:
-    """Yield warnings of one beam: an unusual length."""
-    length, net, _ = measures
-    least, most = training.beam_length if training else (0.0, limits.beam_length)
-    where = f"beam {beam}"
-    if length > most + ROUNDING:
-        yield Message(
-            "beam-long", where, f"{where} is {length:.2f} mm long; the limit is {most:g} mm"
-        )
-    if length < least - ROUNDING:
-        yield Message(
-            "beam-short", where, f"{where} is {length:.2f} mm long; at least {least:g} mm is usual"
-        )
-    if net < limits.beam_net_length - ROUNDING:
-        yield Message(
-            "beam-short",
-            where,
-            f"{where} is {net:.2f} mm long between its joints; "
-            f"at least {limits.beam_net_length:g} mm is usual",
-        )
+    """Yield warnings of unusual lengths of the beams that have an outline at both ends (B,)."""
+    long, short, net_short = (mask[0] & faced for mask in unusual(measured, limits, training))
+    least, most = usual_length(limits, training)
+    for b in np.flatnonzero(long | short | net_short).tolist():
+        where, length, net = f"beam {b}", measured.full[0, b], measured.net[0, b]
+        if long[b]:
+            text = f"{where} is {length:.2f} mm long; the limit is {most:g} mm"
+            yield Message("beam-long", where, text)
+        if short[b]:
+            text = f"{where} is {length:.2f} mm long; at least {least:g} mm is usual"
+            yield Message("beam-short", where, text)
+        if net_short[b]:
+            text = (
+                f"{where} is {net:.2f} mm long between its joints; "
+                f"at least {limits.beam_net_length:g} mm is usual"
+            )
+            yield Message("beam-short", where, text)
 
 
-def _collisions(
-    shapes: dict[int, JointOutline], quads: dict[int, NDArray[np.float64]]
-) -> Iterator[Message]:
-    """Yield an error for each two parts of the outline that overlap."""
-    names = [f"joint {k}" for k in shapes] + [f"beam {b}" for b in quads]
-    # Counter-clockwise: start right, end right, end left, start left.
-    around = [quad[[0, 1, 1, 0], [0, 0, 1, 1]] for quad in quads.values()]
-    pieces = np.array([*(shape.corners for shape in shapes.values()), *around])
-    for a, b in overlaps(pieces.reshape(-1, 4, 2)).tolist():
-        yield Message(
-            "overlap",
-            names[b],
-            f"{names[a]} and {names[b]} overlap; parts of a grid meet only end to end",
-        )
+def _collisions(shape: Outlines, roomy: Mask) -> Iterator[Message]:
+    """Yield an error for each two parts that overlap, of the joints and the roomy beams (B,)."""
+    joints = len(shape.valence)
+    for _, *two in collisions(shape, roomy[None], MOST_NAMED).tolist():
+        a, b = (f"joint {k}" if k < joints else f"beam {k - joints}" for k in two)
+        text = f"{a} and {b} overlap; parts of a grid meet only end to end"
+        yield Message("overlap", b, text)
 
 
-def _size(grid: Grid, joints: NDArray[np.bool_], training: TrainingRange) -> Iterator[Message]:
+def _size(grid: Grid, at: Topology, training: TrainingRange) -> Iterator[Message]:
     """Yield a warning when the grid is smaller or larger than the model's training data."""
-    away = np.linalg.norm(grid.joints[joints] - grid.joints[grid.fixed], axis=1).max()
+    away = np.linalg.norm(grid.joints[at.joints] - grid.joints[grid.fixed], axis=1).max()
     least, most = training.dimension
-    if not least - ROUNDING <= away <= most + ROUNDING:
+    if outside(away, training):
         yield Message(
             "grid-size",
             "grid",

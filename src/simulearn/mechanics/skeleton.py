@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.grid.outline import TIE
+from simulearn.grid.outline import corner_topology
 from simulearn.material import Section
 from simulearn.mechanics.poses import Array
 
@@ -71,59 +71,13 @@ class Flat(NamedTuple):
 def skeletons(beams: Indices, fixed: int, joints: NDArray[np.float64]) -> Skeleton:
     """Return the skeletons of valid designs of one topology, stacked along T.
 
-    The rules are those of `grid.outline`, for many designs at once.
-
     Args:
         beams: (B, 2) joint indices.
         fixed: index of the fixed joint.
         joints: (T, J, 2) mm.
     """
-    trials, count = joints.shape[:2]
-    many = len(beams)
-    whole = lambda *shape: np.zeros((trials, *shape), np.int64)  # noqa: E731
-    before, after, parts, part = (whole(count, 4) for _ in range(4))
-    side = whole(2, many)
-    row = np.arange(trials)
-    for joint in range(count):
-        ends, leaving = np.argwhere(joint == beams.T).T
-        half = ends * many + leaving
-        way = joints[:, beams[leaving, 1 - ends]] - joints[:, joint, None]
-        angle = np.arctan2(way[..., 1], way[..., 0])
-        order = np.argsort(angle, axis=1)
-        angle = np.take_along_axis(angle, order, 1)
-        half, beam = half[order], leaving[order]
-        gap = np.diff(angle, axis=1, append=angle[:, :1] + 2 * np.pi)
-        divided = _divided(gap, beam, many)
-        behind = np.cumsum(divided, axis=1)
-        corner = np.arange(4)
-        wedge = (behind[:, None, :] <= corner[:, None]).sum(axis=-1)  # (T, 4)
-        pick = lambda x, at=wedge: np.take_along_axis(x, at, 1)  # noqa: E731
-        k = corner - (pick(behind) - pick(divided))
-        bisector = pick(angle) + pick(gap) / pick(divided) * (k + 0.5)
-        first = ((bisector + TIE) % (2 * np.pi)).argmin(axis=1)
-        roll = (corner + first[:, None]) % 4
-        before[:, joint] = pick(pick(half), roll)
-        after[:, joint] = pick(pick(np.roll(half, -1, axis=1)), roll)
-        parts[:, joint] = pick(pick(divided), roll)
-        part[:, joint] = pick(k, roll)
-        begins = (behind - divided - 1 - first[:, None]) % 4
-        side.reshape(trials, -1)[row[:, None], half] = begins
-    ends = np.broadcast_to(beams.T, (trials, 2, many))
-    return Skeleton(ends, np.full(trials, fixed), before, after, parts, part, side)
-
-
-def _divided(gap: NDArray[np.float64], beam: Indices, many: int) -> Indices:
-    """Return into how many parts each gap (T, n) is divided, so that there are four in all."""
-    following = np.roll(beam, -1, axis=1)
-    between = np.minimum(beam, following) * many + np.maximum(beam, following)
-    parts = np.ones(gap.shape, np.int64)
-    row = np.arange(len(gap))
-    for _ in range(4 - gap.shape[1]):
-        each = gap / parts
-        ties = each >= each.max(axis=1, keepdims=True) - TIE
-        rank = np.where(ties, parts * many**2 + between, np.iinfo(np.int64).max)
-        parts[row, rank.argmin(axis=1)] += 1
-    return parts
+    ends = np.broadcast_to(beams.T, (len(joints), 2, len(beams)))
+    return Skeleton(ends, np.full(len(joints), fixed), *corner_topology(beams, joints))
 
 
 def flat(bones: Skeleton, joints: Array, section: Section) -> Flat:

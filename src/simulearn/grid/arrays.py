@@ -1,0 +1,140 @@
+"""What a grid takes for its numbers: nothing is reshaped, cut off or converted from text.
+
+An index may be a float that is a whole number, as many programs know no other numbers.
+"""
+
+import json
+from math import isfinite
+from numbers import Real
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+
+KEYS = {
+    "joints": "joints are a list of [x, y], finite numbers in mm",
+    "beams": "beams are a list of [i, j], indices of joints counted from 0",
+    "actuators": "actuators are a list of ratios in [-1, 1], one for each beam",
+    "fixed": "the fixed joint is an index counted from 0",
+    "material": "a material is the name of a material system or the path of its TOML file",
+}
+CODES = {
+    "joints": ("joint-place", "joint"),
+    "beams": ("beam-index", "beam"),
+    "actuators": ("actuator-ratio", "beam"),
+}
+
+INDEX = 2**31  # indices are below it
+
+
+def numbers(values: Any, key: str, width: int = 0) -> NDArray[np.float64]:
+    """Return finite numbers as an array of their own, (n,) or (n, width).
+
+    Args:
+        values: lists, tuples or an array.
+        key: "joints" or "actuators", for messages.
+        width: how many numbers an entry has; 0 for entries that are numbers.
+
+    Raises:
+        InputError: the shape is another, or the named entry is not a finite number.
+    """
+    array = _array(values, key, width)
+    if not np.isfinite(array).all():
+        _refuse(values, key, width)
+    return array.astype(np.float64, copy=False)
+
+
+def indices(values: Any, key: str) -> NDArray[np.int64]:
+    """Return pairs of whole numbers as an array (n, 2) of their own.
+
+    Args:
+        values: lists, tuples or an array, also of floats that are whole numbers.
+        key: "beams", for messages.
+
+    Raises:
+        InputError: the shape is another, or the named entry is not a whole number.
+    """
+    array = _array(values, key, 2)
+    if array.dtype.kind != "i" and not ((array % 1 == 0) & (abs(array) < INDEX)).all():
+        _refuse(values, key, 2)
+    return array.astype(np.int64, copy=False)
+
+
+def index(value: Any, key: str) -> int:
+    """Return a whole number.
+
+    Args:
+        value: an int, or a float that is a whole number.
+        key: "fixed", for messages.
+
+    Raises:
+        InputError: it is none.
+    """
+    plain = value if type(value) is int else _plain(value)
+    if not _is_index(plain):
+        raise InputError(f"{key} is {shown(value)}; {KEYS[key]}", "fixed-index", "grid")
+    return int(plain)
+
+
+def shown(value: Any, most: int = 40) -> str:
+    """Return a value as short, plain text on one line."""
+    try:
+        text = json.dumps(_plain(value))
+    except (TypeError, ValueError, RecursionError):
+        text = f"a {type(value).__name__}"
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def _array(values: Any, key: str, width: int) -> NDArray[Any]:
+    """Return an array of real numbers, (n,) or (n, width)."""
+    try:
+        array = np.array(values)
+    except (TypeError, ValueError, OverflowError):
+        _refuse(values, key, width)
+    shape = (0, width) if width else (0,)
+    if not array.size and array.ndim in (1, 2):
+        return np.zeros(shape, np.int64)
+    if array.dtype.kind not in "fiu" or array.ndim != len(shape) or array.shape[1:] != shape[1:]:
+        _refuse(values, key, width)
+    return array
+
+
+def _refuse(values: Any, key: str, width: int) -> NoReturn:
+    """Raise an InputError that names the first entry that is wrong."""
+    code, part = CODES[key]
+    place, where, wrong = key, key, _plain(values)
+    good = _is_index if key == "beams" else _is_number
+    for k, entry in enumerate(wrong if isinstance(wrong, (list, tuple)) else ()):
+        entry = _plain(entry)
+        place, where, wrong = f"{key}[{k}]", f"{part} {k}", entry
+        if not width:
+            if good(entry):
+                continue
+            break
+        if not isinstance(entry, (list, tuple)) or len(entry) != width:
+            break
+        bad = [m for m, x in enumerate(entry) if not good(_plain(x))]
+        if bad:
+            place, wrong = f"{place}[{bad[0]}]", entry[bad[0]]
+            break
+    else:
+        place, where, wrong = key, key, values
+    hint = ""
+    if key == "joints" and isinstance(wrong, (list, tuple)) and len(wrong) == 3:
+        hint = "; drop z"
+    raise InputError(f"{place} is {shown(wrong)}; {KEYS[key]}{hint}", code, where)
+
+
+def _plain(value: Any) -> Any:
+    """Return an array, or a number of an array library, as Python's lists and numbers."""
+    return np.asarray(value).tolist() if hasattr(value, "__array__") else value
+
+
+def _is_number(x: Any) -> bool:
+    return isinstance(x, Real) and not isinstance(x, bool) and isfinite(x)
+
+
+def _is_index(x: Any) -> bool:
+    return _is_number(x) and x % 1 == 0 and abs(x) < INDEX
