@@ -111,7 +111,7 @@ class Problem:
         """
         self.going()
         told = np.full((len(x), len(self.goals), 3), np.nan)
-        sound = np.flatnonzero([self.space.net(one) is not None for one in x])
+        sound = np.flatnonzero(np.isfinite(self.space.nets(x)).all(axis=1))
         if len(sound):
             told[sound] = self.places(self.space.designs(x[sound], a[sound]))
         self.designs += len(sound)

@@ -6,13 +6,13 @@ of a pair. Symmetry is thus never lost, and methods of search see plain vectors.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
-from simulearn.grid import Grid, TrainingRange, validate
+from simulearn.grid import Checks, Grid, TrainingRange, check_designs, validate
 from simulearn.inverse.task import Free
 from simulearn.learn.model import Designs
 from simulearn.material import Material, load_material
@@ -125,21 +125,17 @@ class Space:
 
     def valid(self, x: Array, a: Array) -> Mask:
         """Return which of the points (T, P), (T, Q) are valid grids."""
-        net = self.nets(x)
-        ratios = np.abs(self.designs(x, a).actuators)
-        long_enough = (ratios == 0) | (ratios * net >= self._shortest - CLOSE)
-        valid: Mask = (
-            np.isfinite(net).all(axis=1)
-            & (np.abs(a) <= 1 + CLOSE).all(axis=1)
-            & long_enough.all(axis=1)
-        )
+        designs = self.designs(x, a)
+        checks = self._checks(designs.flat, designs.actuators)
+        valid: Mask = checks.valid & ~self._outside(designs.flat)
         return valid
 
     def nets(self, x: Array) -> Array:
         """Return the net lengths (T, B) mm of the beams; NaN where the joints lie impossibly."""
-        different, which = np.unique(x, axis=0, return_inverse=True)
-        rows = np.array([self._layout(row.tobytes()) for row in different])
-        return rows.reshape(-1, len(self.grid.beams))[which.ravel()]
+        flat = self.designs(x, np.zeros((len(x), len(self.groups)))).flat
+        checks = self._checks(flat, np.zeros((len(x), len(self.grid.beams))))
+        possible = checks.valid & ~self._outside(flat)
+        return np.where(possible[:, None], checks.net_lengths, np.nan)
 
     def net(self, x: Array) -> Array | None:
         """Return the net lengths (B,) mm of the beams, or None if the joints lie impossibly."""
@@ -169,22 +165,15 @@ class Space:
     def _shortest(self) -> float:
         return self._material.limits.actuator_length
 
-    @cached_property
-    def _layout(self):  # type: ignore[no-untyped-def]
-        @lru_cache(maxsize=4096)
-        def layout(x: bytes) -> Array:
-            """Return the net lengths of a layout of joints without actuators, NaN if not valid."""
-            moved = self.grid_at(np.frombuffer(x), self.start[1])
-            bare = Grid(moved.joints, moved.beams, 0 * moved.actuators, moved.fixed, moved.material)
-            report = validate(bare, self._material)
-            confined = self.training is not None and bool(
-                outside(bare.joints[None], bare, self.training)[0]
-            )
-            if report.errors or confined:
-                return np.full(len(bare.beams), np.nan)
-            return np.array([report.net_lengths[b] for b in range(len(bare.beams))])
+    def _checks(self, joints: Array, actuators: Array) -> Checks:
+        grid = self.grid
+        return check_designs(grid.beams, grid.fixed, joints, actuators, self._material)
 
-        return layout
+    def _outside(self, joints: Array) -> Mask:
+        """Return which layouts (T, J, 2) mm are beyond the sizes that confine the space."""
+        if self.training is None:
+            return np.zeros(len(joints), dtype=bool)
+        return outside(joints, self.grid, self.training)
 
 
 def outside(joints: Array, grid: Grid, training: TrainingRange) -> Mask:
