@@ -15,12 +15,15 @@ from network_only import fit_network_only
 from report import Report
 from simulearn.dataset import Dataset, read_dataset
 from simulearn.files import replacing
-from simulearn.learn.config import Config, Fit, Stage, read_config
-from simulearn.learn.evaluate import evaluate, for_testing
-from simulearn.learn.fit import fit
-from simulearn.learn.model import Model
-from simulearn.learn.stages import Keeper
-from simulearn.learn.train import split, train
+from simulearn.learn.common.evaluate import evaluate, for_testing
+from simulearn.learn.common.model import Model
+from simulearn.learn.common.trials import split
+from simulearn.learn.config import read_config
+from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
+from simulearn.learn.equilibrium.stages import Keeper
+from simulearn.learn.equilibrium.train import train as train_equilibrium
+from simulearn.learn.paper.config import PaperConfig
+from simulearn.learn.paper.train import train as train_paper
 from simulearn.show import style
 
 SIZES = (50, 100, 200, 400, 800, 1600)
@@ -47,25 +50,25 @@ def trained(name: str, size: int, data: Dataset, folder: Path) -> Model:
         keep = Keeper("network", folder / "network.safetensors", identity)
         batch = split(config, data)[0][0]
         return fit_network_only(batch, ALONE, ALONE_STAGE, config.seed, keep)
-    if isinstance(config, Fit):
+    if isinstance(config, EquilibriumConfig):
         stage = config.network and config.network.model_copy(update={"updates": UPDATES})
         lean = {"network": stage, "polish": None, "stress": None, "calibration": None}
-        return fit(config.model_copy(update=lean), data, folder)[0]
-    assert isinstance(config, Config)
+        return train_equilibrium(config.model_copy(update=lean), data, folder)[0]
+    assert isinstance(config, PaperConfig)
     batch = max(4, 16 * size // 1600)
     phases = [
         phase.model_copy(update={"batch": batch, "epochs": epochs})
         for phase, epochs in zip(config.phases, EPOCHS, strict=True)
     ]
-    return train(
+    return train_paper(
         config.model_copy(update={"phases": phases}), data, folder / "checkpoint.safetensors"
     )[0]
 
 
 def figures(model: Model, batches: list) -> dict[str, float]:
     """Return what a model is judged by."""
-    told = evaluate(model, batches).errors.summary()
-    return {key: told[key] for key in ("mean_percent", "p97_percent", "worst_percent")}
+    summary = evaluate(model, batches).errors.summary()
+    return {key: summary[key] for key in ("mean_percent", "p97_percent", "worst_percent")}
 
 
 def picture(rows: list[dict]) -> Figure:
@@ -114,7 +117,7 @@ def main() -> None:
                 print(told, flush=True)
     rows = [json.loads(f.read_text("utf-8")) for f in options.runs.glob("*/figures.json")]
     paper = read_config("paper")
-    assert isinstance(paper, Config)
+    assert isinstance(paper, PaperConfig)
     report = Report("curve", "Learning curves")
     report.say(
         "Mean vertex error of the last frame over the 400 test trials, % of dimension, by the "

@@ -25,7 +25,7 @@ from simulearn.inverse.goals import Goals
 from simulearn.inverse.gradient import fitting_slopes
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Free, Task
-from simulearn.learn.slopes import Slopes
+from simulearn.learn.equilibrium.slopes import Slopes
 from simulearn.show import style
 from simulearn.simulate import engine
 

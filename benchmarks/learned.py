@@ -14,8 +14,8 @@ import jax
 
 from report import Report
 from simulearn.dataset import read_dataset
-from simulearn.learn.bundle import bundle_of, shipped
-from simulearn.learn.evaluate import evaluate, for_testing
+from simulearn.learn.common.bundle import bundle_of, shipped
+from simulearn.learn.common.evaluate import evaluate, for_testing
 
 SETS = ("default", "beams-removed", "2x3", "3x3")
 PAPER = ("the paper's (its own FEA)", "default", 400, "3.03", "", "4.13", "", "2.89", *[""] * 4)

@@ -19,8 +19,8 @@ import numpy as np
 
 from report import Report
 from simulearn.grid import Rules, draw_valid
-from simulearn.learn.bundle import bundle_of, shipped
-from simulearn.learn.model import Designs, Model, last_frame
+from simulearn.learn.common.bundle import bundle_of, shipped
+from simulearn.learn.common.model import Designs, Model, last_frame
 from simulearn.simulate import engine
 
 

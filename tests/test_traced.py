@@ -51,7 +51,7 @@ def test_other_shapes_names_and_sources_are_other_traces(
     assert len(list(kept.iterdir())) == 3
     with pytest.raises(AssertionError, match="traced again"):
         Traced("thrice", never)({"a": NUMBERS})
-    monkeypatch.setattr(traced, "source", lambda: "changed")
+    monkeypatch.setattr(traced, "SOURCE", "changed")
     with pytest.raises(AssertionError, match="traced again"):
         Traced("twice", never)({"a": NUMBERS})
 

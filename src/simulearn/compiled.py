@@ -1,24 +1,43 @@
-"""How JAX is set up: double precision, and compiled kernels kept between runs.
+"""How JAX is used: double precision around each call, kernels kept between runs where asked.
 
-Import this before using JAX. Kernels are kept in the user's cache folder, so that only the first
-simulation on a machine waits for the compiler; JAX_COMPILATION_CACHE_DIR names another folder.
+Importing this changes nothing. Library code runs JAX in double precision through
+`double_precision`. A program that owns its process calls `keep_kernels`, so that only the first
+use on a machine waits for the compiler; JAX_COMPILATION_CACHE_DIR names another folder.
 """
 
 import os
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
+from typing import ParamSpec, TypeVar
 
 import jax
 import jax.monitoring
 
 from simulearn.files import cache_folder
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
 MAPS = 30_000  # memory maps; Linux grants a process 65,530
 AFTER = 20  # kernels made since the last count, before maps are counted again
 
 
-def _keep_kernels() -> None:
+def double_precision(function: Callable[P, T]) -> Callable[P, T]:
+    """Return a function that runs with JAX in double precision, and leaves JAX as it was."""
+
+    @wraps(function)
+    def wrapped(*args: P.args, **kwargs: P.kwargs) -> T:
+        with jax.enable_x64(True):
+            return function(*args, **kwargs)
+
+    return wrapped
+
+
+def keep_kernels() -> None:
+    """Keep kernels that this process compiles in the user's cache folder, for the next one."""
     base = cache_folder()
-    if base is None:
+    if base is None or "JAX_COMPILATION_CACHE_DIR" in os.environ:
         return
     folder = base / "compiled"
     try:
@@ -59,6 +78,3 @@ def make_room() -> None:
 
 _made = _Made()
 jax.monitoring.register_event_duration_secs_listener(_made)
-jax.config.update("jax_enable_x64", True)
-if "JAX_COMPILATION_CACHE_DIR" not in os.environ:
-    _keep_kernels()

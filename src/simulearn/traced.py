@@ -1,16 +1,15 @@
 """Traced functions, kept between runs: tracing a simulator takes seconds, reading it back does not.
 
 What a function traces to, for the shapes of its arguments, is kept as StableHLO beside the compiled
-kernels (see `compiled`). Its file is named by all that it follows from: the source of SimuLearn,
-the versions of JAX, the platform, the name of the function and the shapes. What cannot be read is
-made anew; where nothing can be written, every run traces for itself.
+kernels (see `compiled`). Its file is named by all that it follows from: the traced source, as it
+was at import, the versions of JAX, the platform, the name of the function and the shapes. What
+cannot be read is made anew; where nothing can be written, every run traces for itself.
 """
 
 import hashlib
 import threading
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +22,8 @@ from simulearn.errors import InputError
 from simulearn.files import replacing
 
 PACKAGE = Path(__file__).parent
-SOURCE = (".py", ".toml")  # code, and data such as the material
+TRACED = ("mechanics", "learn/equilibrium")  # folders whose functions are traced
+MOST = 64  # compiled functions kept in memory
 Call = Callable[[list[Any]], Any]
 
 
@@ -48,45 +48,53 @@ class Traced:
             with self._finding:  # other threads wait rather than compile the same
                 if (tree, shapes) not in self._calls:
                     call = self._found(leaves, tree, shapes)
-                    told = call(leaves)
-                    self._calls[tree, shapes] = call
-                    return told
+                    result = call(leaves)
+                    self._keep((tree, shapes), call)
+                    return result
         return self._calls[tree, shapes](leaves)
+
+    def _keep(self, key: Any, call: Call) -> None:
+        """Keep a compiled function; of many, those met first are forgotten."""
+        while len(self._calls) >= MOST:
+            self._calls.pop(next(iter(self._calls)))
+        self._calls[key] = call
 
     def _found(self, leaves: list[Any], tree: Any, shapes: Any) -> Call:
         """Return the compiled function, from what was kept of it or traced now."""
         make_room()
         fresh = jax.jit(lambda flat: self.function(*jax.tree.unflatten(tree, flat)))
-        kept_in = jax.config.values["jax_compilation_cache_dir"]
-        if not kept_in:
+        folder = jax.config.values["jax_compilation_cache_dir"]
+        if not folder:
             return fresh
-        told = (source(), self.name, str(tree), shapes, jax.default_backend())
-        name = hashlib.sha256(repr(told).encode()).hexdigest()
-        file = Path(kept_in) / "traced" / f"{name}.stablehlo"
+        key = (SOURCE, self.name, str(tree), shapes, jax.default_backend())
+        name = hashlib.sha256(repr(key).encode()).hexdigest()
+        file = Path(folder) / "traced" / f"{name}.stablehlo"
         with suppress(OSError, ValueError):
-            return jax.jit(export.deserialize(bytearray(_whole(file.read_bytes()))).call)
+            return jax.jit(export.deserialize(bytearray(_checked(file.read_bytes()))).call)
         like = [jax.ShapeDtypeStruct(x.shape, x.dtype) for x in leaves]
         traced = export.export(fresh)(like)
         with suppress(OSError, InputError):
             file.parent.mkdir(parents=True, exist_ok=True)
             with replacing(file) as temporary:
-                kept = bytes(traced.serialize())
-                temporary.write_bytes(hashlib.sha256(kept).digest() + kept)
+                content = bytes(traced.serialize())
+                temporary.write_bytes(hashlib.sha256(content).digest() + content)
         return jax.jit(traced.call)
 
 
-def _whole(told: bytes) -> bytes:
-    """Return what was kept, if it is what its hash, the first 32 bytes, says."""
-    if hashlib.sha256(told[32:]).digest() != told[:32]:
+def _checked(content: bytes) -> bytes:
+    """Return what follows the hash in the first 32 bytes, if it has that hash."""
+    if hashlib.sha256(content[32:]).digest() != content[:32]:
         raise ValueError("damaged")
-    return told[32:]
+    return content[32:]
 
 
-@cache
 def source() -> str:
-    """Return a hash of SimuLearn's source and of the versions of JAX."""
+    """Return a hash of the source that is traced and of the versions of JAX, as of now."""
     digest = hashlib.sha256(f"{jax.__version__} {jaxlib.__version__}".encode())
-    for file in sorted(f for f in PACKAGE.rglob("*") if f.suffix in SOURCE):
+    for file in sorted(f for folder in TRACED for f in (PACKAGE / folder).rglob("*.py")):
         name = file.relative_to(PACKAGE).as_posix()
         digest.update(name.encode() + b"\0" + file.read_bytes() + b"\0")
     return digest.hexdigest()
+
+
+SOURCE = source()  # at import: what runs is what was read then

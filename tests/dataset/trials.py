@@ -29,7 +29,8 @@ def solved(grids: tuple[Grid, ...]) -> Batch:
         stress=np.stack([trial.stress for trial in trials]),
         numbers=np.arange(len(grids)),
         test=np.zeros(len(grids), bool),
-        material=grids[0].material,
+        material=load_material(grids[0].material),
+        reference=grids[0].material,
     )
 
 

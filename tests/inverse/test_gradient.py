@@ -59,9 +59,7 @@ def test_the_method_goes_down_and_ends_with_whole_steps(learned, monkeypatch):
     target = learned.simulate([make("twist", (1, 1), 57.0)])[0].centres[-1]
     goals = Goals.centres(target)
     space = Space.of(make("flat", (1, 1), 52.0), Free())
-    problem = Problem(
-        space, goals, places(learned, goals, space.grid.material), model=learned.bundle.model
-    )
+    problem = Problem(space, goals, places(learned, goals), model=learned.bundle.model)
     start = problem.found(*space.start)
     list(islice(gradient(problem, start), 60))
     assert problem.best.error < 0.3 * start.error

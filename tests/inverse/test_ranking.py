@@ -13,7 +13,7 @@ from simulearn.material import load_material
 @pytest.fixture
 def ranked(monkeypatch):
     """The ranking of a saddle by the toy, a cone being wanted."""
-    monkeypatch.setattr(ranking, "places", lambda engine, goals, material, cancel: toy)
+    monkeypatch.setattr(ranking, "places", lambda engine, goals, cancel: toy)
     goals = Goals.centres(toy(alone(make("cone", length=62.0)))[0])
     return ranking._ranked(make("saddle", length=60.0), goals, Free(), None, None)
 
@@ -41,7 +41,7 @@ def test_the_five_differ(ranked):
 
 
 def test_where_few_may_change_the_next_best_fill_up(monkeypatch):
-    monkeypatch.setattr(ranking, "places", lambda engine, goals, material, cancel: toy)
+    monkeypatch.setattr(ranking, "places", lambda engine, goals, cancel: toy)
     goals = Goals.centres(np.zeros((9, 3)))
     free = Free(joints=[0], actuators=[])
     ranked = ranking._ranked(make("saddle", length=60.0), goals, free, None, None)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from simulearn.grid import Grid
-from simulearn.learn.model import Designs
+from simulearn.learn.common.model import Designs
 
 
 def toy(designs: Designs) -> np.ndarray:

@@ -18,14 +18,14 @@ from dataclasses import replace
 import numpy as np
 
 from simulearn.grid import Rules, draw_valid
-from simulearn.learn.flat import flat
-from simulearn.learn.model import Designs, Model, builder
+from simulearn.learn.common.first_frame import first_frame
+from simulearn.learn.common.model import Designs, Model, builder
 
 Law = Callable[[Model, Designs], None]
 
 
 def the_first_frame_is_the_design(model, designs):
-    frames, first = model.rollout(designs), flat(designs)
+    frames, first = model.rollout(designs), first_frame(designs)
     np.testing.assert_allclose(frames.joints[:, 0], first.joints, atol=1e-9)
     np.testing.assert_allclose(frames.sections[:, 0], first.sections, atol=1e-9)
 
@@ -63,7 +63,7 @@ def asking_again_gives_the_same_bits(model, designs):
 
 
 def built_again_it_gives_the_same_bits(model, designs):
-    again = builder(model.kind)(model.config(), model.to_arrays())
+    again = builder(model.kind)(model.config(), model.to_arrays(), designs.material)
     a, b = model.rollout(designs), again.rollout(designs)
     np.testing.assert_array_equal(a.joints, b.joints)
     np.testing.assert_array_equal(a.sections, b.sections)

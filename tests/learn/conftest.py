@@ -9,10 +9,12 @@ from conformance import designs_like
 
 from simulearn.dataset import Dataset, read_dataset
 from simulearn.grid import Rules
-from simulearn.learn.config import Config, config_of
-from simulearn.learn.model import Designs
-from simulearn.learn.paper import Paper
-from simulearn.learn.train import begin, split
+from simulearn.learn.common.model import Designs
+from simulearn.learn.common.trials import split
+from simulearn.learn.config import config_of
+from simulearn.learn.paper.config import PaperConfig as Config
+from simulearn.learn.paper.model import Paper
+from simulearn.learn.paper.train import begin
 
 SAMPLE = Path(__file__).parent.parent / "data" / "sample.h5"
 

@@ -5,8 +5,8 @@ import pytest
 
 from simulearn.fea import simulate_grid
 from simulearn.fea.bar import bar
-from simulearn.learn.bundle import bundle_of
-from simulearn.learn.model import Designs
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.model import Designs
 from simulearn.material import load_material
 
 PLA = load_material("pla-hot-water")

@@ -7,8 +7,8 @@ import pytest
 from safetensors.numpy import load_file, save_file
 
 from simulearn.errors import InputError
-from simulearn.learn import bundle as bundles
-from simulearn.learn.bundle import bundle_of, save_bundle, tell_metrics
+from simulearn.learn.common import bundle as bundles
+from simulearn.learn.common.bundle import add_metrics, bundle_of, save_bundle
 
 
 @pytest.fixture
@@ -44,7 +44,7 @@ def test_the_card_tells_where_the_model_comes_from(saved, sample, small):
 
 
 def test_figures_are_added_to_the_card(saved):
-    told = tell_metrics(saved, "sample", {"mean_percent": 3.0})
+    told = add_metrics(saved, "sample", {"mean_percent": 3.0})
     assert bundle_of(told.path).card.metrics == {"sample": {"mean_percent": 3.0}}
     assert bundle_of(told.path).model is not None
 

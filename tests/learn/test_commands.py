@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from simulearn.cli import app
 from simulearn.grid import make, write_grid
-from simulearn.learn.bundle import bundle_of, save_bundle
+from simulearn.learn.common.bundle import bundle_of, save_bundle
 
 runner = CliRunner()
 

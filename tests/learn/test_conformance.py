@@ -5,7 +5,7 @@ import pytest
 from conformance import LAWS, designs_like, mirrored_error, name_of, turned_error
 
 from simulearn.grid import Rules
-from simulearn.learn.bundle import bundle_of, shipped
+from simulearn.learn.common.bundle import bundle_of, shipped
 
 EXACT = {"beams", "equilibrium"}  # kinds that turn exactly with the design
 

@@ -7,9 +7,9 @@ import pytest
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Rules, draw_valid, make
-from simulearn.learn.bundle import save_bundle
-from simulearn.learn.flat import flat
-from simulearn.learn.model import Designs
+from simulearn.learn.common.bundle import save_bundle
+from simulearn.learn.common.first_frame import first_frame
+from simulearn.learn.common.model import Designs
 from simulearn.simulate import Result, engine, one, read_npz, write_npz
 from simulearn.simulate.learned import Learned
 
@@ -45,7 +45,7 @@ def test_the_answer_is_the_models(learned, model):
     frames = model.rollout(designs)
     np.testing.assert_array_equal(result.joints, frames.joints[0])
     np.testing.assert_array_equal(result.beams, frames.sections[0])
-    np.testing.assert_allclose(result.joints[0], flat(designs).joints[0], atol=1e-12)
+    np.testing.assert_allclose(result.joints[0], first_frame(designs).joints[0], atol=1e-12)
 
 
 def test_a_result_without_stress_can_be_kept(learned, tmp_path):
@@ -64,7 +64,7 @@ def test_only_the_learned_engine_takes_a_model(folder):
         engine("learned", "nowhere")
 
 
-def test_another_material_than_the_models_is_refused(learned, tmp_path):
+def test_a_material_is_known_by_its_contents(learned, tmp_path):
     from simulearn.material import load_material
     from simulearn.material.material import HERE
 

@@ -7,10 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from simulearn.errors import InputError
-from simulearn.learn.evaluate import evaluate, for_testing
-from simulearn.learn.flat import designs_of, flat
-from simulearn.learn.metrics import rotations
-from simulearn.learn.model import Frames
+from simulearn.learn.common.evaluate import evaluate, for_testing
+from simulearn.learn.common.first_frame import designs_of, first_frame
+from simulearn.learn.common.metrics import rotations
+from simulearn.learn.common.model import Frames
 
 
 class Known:
@@ -92,4 +92,4 @@ def test_examples_are_the_best_and_the_worst(sample, model):
     for k in range(len(last)):
         batch, frames, t = found.trial(k)
         assert batch.numbers[t] == found.errors.numbers[k]
-        np.testing.assert_array_equal(frames.joints[t, 0], flat(designs_of(batch)).joints[t])
+        np.testing.assert_array_equal(frames.joints[t, 0], first_frame(designs_of(batch)).joints[t])

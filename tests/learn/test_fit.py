@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 
 from simulearn.errors import InputError
-from simulearn.learn import stages
-from simulearn.learn.bundle import bundle_of
-from simulearn.learn.config import Fit, config_of, read_config
-from simulearn.learn.equilibrium import Equilibrium
-from simulearn.learn.fit import fit
-from simulearn.learn.model import Designs
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.model import Designs
+from simulearn.learn.config import config_of, read_config
+from simulearn.learn.equilibrium import stages
+from simulearn.learn.equilibrium.bound import ErrorBound, beyond, error_bound_of
+from simulearn.learn.equilibrium.config import EquilibriumConfig
+from simulearn.learn.equilibrium.model import Equilibrium
+from simulearn.learn.equilibrium.train import train
 from simulearn.learn.run import run
-from simulearn.learn.trust import Trust, beyond, trust_of
 
 
 @pytest.fixture(scope="module")
-def config(sample_file) -> Fit:
+def config(sample_file) -> EquilibriumConfig:
     stage = {"updates": 40, "batch": 4, "rate": 0.1}
     data = {
         "name": "little", "kind": "equilibrium", "data": str(sample_file), "validation": 2,
@@ -64,14 +65,14 @@ def test_the_curve_is_kept(fitted, folder):
 
 
 def test_a_finished_run_has_nothing_left_to_do(config, sample, fitted, folder):
-    again, rows = fit(config, sample, folder)
+    again, rows = train(config, sample, folder)
     assert [row.loss for row in rows] == [row.loss for row in fitted[1]]
     for name, value in fitted[0].model.to_arrays().items():
         np.testing.assert_array_equal(again.to_arrays()[name], value)
 
 
 def test_a_stopped_run_goes_on_bit_for_bit(config, sample, fitted, tmp_path):
-    """The stage of the law alone, which is the same in both kinds."""
+    """The stage of the section model alone, which is the same in both kinds."""
     data = config.model_dump() | {"network": None, "stress": None, "calibration": None}
     beams = config_of(data | {"kind": "beams"}, "little")
 
@@ -80,8 +81,8 @@ def test_a_stopped_run_goes_on_bit_for_bit(config, sample, fitted, tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        fit(beams, sample, tmp_path, stop)
-    model, rows = fit(beams, sample, tmp_path)
+        train(beams, sample, tmp_path, stop)
+    model, rows = train(beams, sample, tmp_path)
     assert [row.loss for row in rows] == [row.loss for row in fitted[1][:4]]
     for name, value in model.to_arrays().items():
         np.testing.assert_array_equal(value, fitted[0].model.to_arrays()[name])
@@ -89,7 +90,7 @@ def test_a_stopped_run_goes_on_bit_for_bit(config, sample, fitted, tmp_path):
 
 def test_a_checkpoint_of_another_run_is_refused(config, sample, fitted, folder):
     with pytest.raises(InputError, match="is of another run"):
-        fit(config, replace(sample, sha256="other"), folder)
+        train(config, replace(sample, sha256="other"), folder)
 
 
 def test_a_network_belongs_to_its_kind(config):
@@ -111,27 +112,27 @@ def test_an_estimate_that_nine_of_ten_stay_below(sample):
     rng = np.random.default_rng(0)
     sign = np.stack([np.ones(2000), rng.normal(size=2000)], axis=1)
     error = np.exp(0.5 * sign[:, 1] + 0.3 * rng.normal(size=2000))
-    trust = trust_of(sign[:1000], error[:1000], sample.batches)
+    trust = error_bound_of(sign[:1000], error[:1000], sample.batches)
     below = error[1000:] <= np.exp(sign[1000:] @ trust.weights)
     assert below.mean() == pytest.approx(0.9, abs=0.03)
     assert trust.weights[1] == pytest.approx(0.5, abs=0.05)
 
 
-def test_outside_the_ranges_less_is_trusted(fitted):
-    trust = fitted[0].model.trust
-    (low, high), _ = trust.ranges
+def test_outside_the_ranges_the_bound_grows(fitted):
+    bound = fitted[0].model.bound
+    (low, high), _ = bound.ranges
     beams = np.array([[0, 1], [0, 2]])
 
     def of(size):
         flat = np.array([[[0, 0], [size, 0], [0, 50.0]]])
         return Designs(beams, 0, flat, np.zeros((1, 2)))
 
-    assert beyond(of((low + high) / 2), trust.ranges)[0] == 0
-    assert beyond(of(high + (high - low)), trust.ranges)[0] >= 1
-    assert isinstance(trust, Trust)
+    assert beyond(of((low + high) / 2), bound.ranges)[0] == 0
+    assert beyond(of(high + (high - low)), bound.ranges)[0] >= 1
+    assert isinstance(bound, ErrorBound)
 
 
-def test_the_default_model_tells_its_error(sample):
+def test_the_default_model_estimates_its_error(sample):
     model = bundle_of("default").model
     assert isinstance(model, Equilibrium)
     batch = sample.batches[0]

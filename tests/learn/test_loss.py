@@ -6,9 +6,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from simulearn.learn.loss import Prepared, Weights, _noisy, dislocation, loss, touching
+from simulearn.dataset.features import touching
+from simulearn.learn.paper.loss import LossWeights, Prepared, _noisy, dislocation, loss
 
-NOTHING = Weights(*(jnp.float32(x) for x in (0.0, 1.0, 1.0)))
+NOTHING = LossWeights(*(jnp.float32(x) for x in (0.0, 1.0, 1.0)))
 
 
 @pytest.fixture(scope="module")

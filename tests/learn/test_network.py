@@ -7,12 +7,12 @@ import pytest
 from conformance import gradient_is_that_of_finite_differences
 
 from simulearn.dataset.features import edge_features, end_modes, node_features, one_hot
-from simulearn.learn.fitting import normalisers
-from simulearn.learn.flat import flat
-from simulearn.learn.graph import meetings, topology
-from simulearn.learn.normaliser import fit, placed
-from simulearn.learn.paper import whole
-from simulearn.learn.state import features, state_of
+from simulearn.learn.common.first_frame import first_frame
+from simulearn.learn.paper.graph import graph_of, meetings
+from simulearn.learn.paper.model import whole
+from simulearn.learn.paper.normaliser import fit, placed
+from simulearn.learn.paper.normalisers import normalisers
+from simulearn.learn.paper.state import features, state_of
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def batch(sample):
 def pieces(batch, frame):
     state = state_of(batch.joints[:, frame], batch.sections[:, frame], batch.stress[:, frame])
     ratio = jnp.asarray(batch.actuators.T[..., None], jnp.float32)
-    shape = topology(batch.beams, batch.flat.shape[1], batch.fixed)
+    shape = graph_of(batch.beams, batch.flat.shape[1], batch.fixed)
     return state, ratio, shape, meetings(batch.beams, end_modes(batch))
 
 
@@ -165,9 +165,9 @@ def test_increments_are_given_by_their_components(sample):
 
 def test_the_gradient_of_a_rollout_is_that_of_finite_differences(model, designs):
     one = designs.take([0])
-    first = flat(one)
+    first = first_frame(one)
     double = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), model)
-    shape = topology(one.beams, one.flat.shape[1], one.fixed)
+    shape = graph_of(one.beams, one.flat.shape[1], one.fixed)
     meet = meetings(one.beams, first.modes)
     state = state_of(first.joints, first.sections, first.stress)
     state = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), state)

@@ -7,8 +7,8 @@ import numpy as np
 from conformance import designs_like
 
 from simulearn.grid import Rules
-from simulearn.learn import equilibrium
-from simulearn.learn.bundle import bundle_of
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.equilibrium import compiled
 
 FACTORS = """
 from concurrent.futures import ThreadPoolExecutor
@@ -19,22 +19,22 @@ from simulearn.mechanics.stiffness import cholesky
 matrices = 60 * jnp.eye(54) + jnp.ones((16, 54, 54))
 many = jax.jit(lambda x: jax.lax.fori_loop(0, 200, lambda _, y: x + 0 * jax.vmap(cholesky)(y), x))
 with ThreadPoolExecutor(2) as pool:
-    found = list(pool.map(lambda _: many(matrices).block_until_ready(), range(20)))
-assert all((x == matrices).all() for x in found)
+    roots = list(pool.map(lambda _: many(matrices).block_until_ready(), range(20)))
+assert all((x == matrices).all() for x in roots)
 """
 
 
 def test_they_are_those_of_one(monkeypatch):
     model, designs = bundle_of("equilibrium").model, designs_like(Rules(), 22)
-    told = []
+    frames = []
     for threads in (1, 3):
-        monkeypatch.setattr(equilibrium, "cores", lambda n=threads: n)
-        told.append(model.rollout(designs))
-    assert told[0].converged.all()
-    np.testing.assert_array_equal(told[0].joints, told[1].joints)
-    np.testing.assert_array_equal(told[0].stress, told[1].stress)
+        monkeypatch.setattr(compiled, "cores", lambda n=threads: n)
+        frames.append(model.rollout(designs))
+    assert frames[0].converged.all()
+    np.testing.assert_array_equal(frames[0].joints, frames[1].joints)
+    np.testing.assert_array_equal(frames[0].stress, frames[1].stress)
     one = model.rollout(designs.take([17]))
-    np.testing.assert_allclose(one.joints[0], told[0].joints[17], atol=1e-2)
+    np.testing.assert_allclose(one.joints[0], frames[0].joints[17], atol=1e-2)
 
 
 def test_factors_of_many_do_not_wait_for_each_other():

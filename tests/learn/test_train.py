@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 from simulearn.errors import ComputationError, InputError
-from simulearn.learn import checkpoint
-from simulearn.learn.config import Phase, config_of, read_config, shipped
-from simulearn.learn.train import split, train
+from simulearn.learn.common import checkpoint
+from simulearn.learn.common.trials import split
+from simulearn.learn.config import config_of, read_config, shipped
+from simulearn.learn.paper.config import Phase
+from simulearn.learn.paper.train import train
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +80,7 @@ def test_a_checkpoint_of_another_run_is_refused(small, sample, tmp_path):
 def test_a_checkpoint_of_other_shapes_is_refused(tmp_path):
     path = tmp_path / "some.safetensors"
     checkpoint.save(path, [np.zeros(3), np.ones((2, 2))], {"note": 1})
-    assert checkpoint.told(path) == {"note": 1}
+    assert checkpoint.header(path) == {"note": 1}
     back = checkpoint.load(path, [np.zeros(3), np.zeros((2, 2))])
     np.testing.assert_array_equal(back[1], 1)
     with pytest.raises(InputError, match="another architecture"):
@@ -140,7 +142,7 @@ def test_ctrl_c_leaves_a_run_that_goes_on(small, sample_file, tmp_path):
     process.send_signal(signal.SIGINT)
     assert "the same command goes on" in process.communicate(timeout=60)[1]
     assert process.returncode == 130
-    rows = checkpoint.told(folder / "checkpoint.safetensors")["rows"]
+    rows = checkpoint.header(folder / "checkpoint.safetensors")["rows"]
     assert 1 <= len(rows) < 500
     assert not list(folder.glob(".*"))
 

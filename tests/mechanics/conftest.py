@@ -1,12 +1,10 @@
-"""What is compiled here runs for less time than compiling it for speed would take."""
+"""Mechanics in double precision, as the models run it."""
 
 import jax
 import pytest
 
 
-@pytest.fixture(scope="module", autouse=True)
-def quick_to_compile():
-    before = jax.config.read("jax_disable_most_optimizations")
-    jax.config.update("jax_disable_most_optimizations", True)
-    yield
-    jax.config.update("jax_disable_most_optimizations", before)
+@pytest.fixture(autouse=True)
+def double_precision():
+    with jax.enable_x64(True):
+        yield

@@ -80,7 +80,7 @@ def validation_of(grid: Grid, model: str | None) -> Validation:
     """Return what validation says, by the training ranges of a model if one is named."""
     if model is None:
         return validated(grid)
-    from simulearn.learn.bundle import bundle_of
+    from simulearn.learn.common.bundle import bundle_of
 
     training = bundle_of(model).card.range
     return validate(grid, load_material(grid.material), training=training)

@@ -16,7 +16,7 @@ from simulearn.errors import InputError
 from simulearn.files import replacing
 
 if TYPE_CHECKING:
-    from simulearn.learn.evaluate import Evaluation
+    from simulearn.learn.common.evaluate import Evaluation
 
 
 @app.command()
@@ -42,7 +42,8 @@ def train(
 ) -> None:
     """Train a model; the same command goes on where it was stopped."""
     from simulearn.dataset import read_dataset
-    from simulearn.learn.config import Fit, read_config
+    from simulearn.learn.config import read_config
+    from simulearn.learn.equilibrium.config import EquilibriumConfig
 
     asked = read_config(config)
     folder = output or Path("runs") / (asked.name + ("-search" if search else ""))
@@ -55,9 +56,9 @@ def train(
     folder_of(folder)
     trials = read_dataset(source, "train")
     if search:
-        if isinstance(asked, Fit):
+        if isinstance(asked, EquilibriumConfig):
             raise InputError("--search is for the kind paper; this configuration has no noise")
-        from simulearn.learn.search import search as search_for
+        from simulearn.learn.paper.search import search as search_for
         from simulearn.show.learning import search_picture
 
         with counting("runs", quiet=as_json) as progress:
@@ -73,7 +74,9 @@ def train(
     from simulearn.learn.run import run
     from simulearn.show.learning import loss_picture, stages_picture
 
-    picture: Callable[[Any, str], Any] = stages_picture if isinstance(asked, Fit) else loss_picture
+    picture: Callable[[Any, str], Any] = (
+        stages_picture if isinstance(asked, EquilibriumConfig) else loss_picture
+    )
 
     def draw(rows: Any, path: Path) -> None:
         with replacing(path) as temporary:
@@ -109,9 +112,9 @@ def evaluate(
 ) -> None:
     """Compare a model with the trials of a data set that are kept for testing."""
     from simulearn.dataset import read_dataset
-    from simulearn.learn.bundle import bundle_of, tell_metrics
-    from simulearn.learn.evaluate import evaluate as evaluate_
-    from simulearn.learn.evaluate import for_testing
+    from simulearn.learn.common.bundle import add_metrics, bundle_of
+    from simulearn.learn.common.evaluate import evaluate as evaluate_
+    from simulearn.learn.common.evaluate import for_testing
 
     bundle = bundle_of(model)
     trained = bundle.model
@@ -129,7 +132,7 @@ def evaluate(
         **found.errors.summary(),
     }
     if record:
-        tell_metrics(bundle, data.config.name, figures)
+        add_metrics(bundle, data.config.name, figures)
     if output is not None:
         _write(found, figures, output)
     if as_json:

@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from simulearn.dataset.packed import Array, Batch
 from simulearn.grid import outline
-from simulearn.material import load_material
 
 BINS = 10  # of the full turn, in each of which a trial is turned once (the paper's)
 
@@ -84,7 +83,7 @@ def _moved(batch: Batch, matrix: NDArray[np.float64]) -> Batch:
 
 def _renumbered(batch: Batch) -> Batch:
     """Return trials with the joints' corners in the order of the convention."""
-    section = load_material(batch.material).section
+    section = batch.material.section
     right = np.stack([outline(batch.grid(t), section).joints for t in range(len(batch))])
     here = batch.joints[:, 0, :, :4, :2]
     away = np.linalg.norm(right[:, :, :, None] - here[:, :, None], axis=-1)

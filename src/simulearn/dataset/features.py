@@ -1,4 +1,4 @@
-"""The graph of a trial: what a learned simulator sees of its beams, joints and connections.
+"""The graph of a trial: the features of its beams, joints and connections.
 
 A beam is an edge: the corners of three sections, the stress at its sampling points, its actuator
 and where the fixed joint is. A joint is a node: its eight corners, whether it is the fixed one,
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from simulearn.dataset.packed import Batch
 from simulearn.grid import outline
-from simulearn.material import load_material
 
 Array = NDArray[np.floating]
 Indices = NDArray[np.int64]
@@ -69,7 +68,7 @@ def node_features(batch: Batch) -> Array:
 
 def sides(batch: Batch) -> Indices:
     """Return the side of its start and of its end joint that each beam meets: (T, B, 2)."""
-    section = load_material(batch.material).section
+    section = batch.material.section
     return np.stack([outline(batch.grid(t), section).sides for t in range(len(batch))])
 
 
@@ -87,6 +86,13 @@ def end_modes(batch: Batch) -> Indices:
     ends = batch.sections[:, 0, :, [0, 2], :2, :2].transpose(1, 2, 0, 3, 4)
     away = np.linalg.norm(ends - first[..., None, :], axis=-1)  # (T, B, end, [right, left])
     return 1 + 4 * side + 2 * np.arange(2) + away.argmin(axis=-1)
+
+
+def touching(modes: Indices) -> Indices:
+    """Return the joint corners (T, B, 2, 4) that right-bottom ... left-top of beam ends touch."""
+    side, hand = (modes - 1) // 4, (modes - 1) % 2
+    right, left = (side + hand) % 4, (side + 1 - hand) % 4
+    return np.stack([right, left, right + 4, left + 4], axis=-1)
 
 
 def adjacency(batch: Batch) -> Indices:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from simulearn.dataset.config import Config, config_of
 from simulearn.errors import InputError
 from simulearn.grid import Grid
+from simulearn.material import Material
 
 SCHEMA = "simulearn.dataset/1"
 
@@ -36,10 +37,11 @@ class Batch:
         actuators: (T, B) float64 signed ratios.
         joints: (T, 12, J, 8, 3) corners of the joints.
         sections: (T, 12, B, 3, 4, 3) corners of the beams' sections.
-        stress: (T, 12, B, 4, 4, 6), or None if it was not asked for.
+        stress: (T, 12, B, 4, 4, 6), or None if it was not read.
         numbers: (T,) of the trials in the set.
         test: (T,) whether a trial is kept for testing.
-        material: name of the material system.
+        material: the material system that the trials were computed with.
+        reference: name or path of it in the designs.
     """
 
     beams: NDArray[np.int64]
@@ -51,14 +53,15 @@ class Batch:
     stress: Array | None
     numbers: NDArray[np.int64]
     test: NDArray[np.bool_]
-    material: str
+    material: Material
+    reference: str
 
     def __len__(self) -> int:
         return len(self.numbers)
 
     def grid(self, t: int) -> Grid:
         """Return the design of trial t of the batch."""
-        return Grid(self.flat[t], self.beams, self.actuators[t], self.fixed, self.material)
+        return Grid(self.flat[t], self.beams, self.actuators[t], self.fixed, self.reference)
 
     @property
     def dimensions(self) -> NDArray[np.float64]:
@@ -83,7 +86,7 @@ class Dataset:
         attributes: versions and material, as the file has them.
         failures: (trial, reason) of designs without result.
         redraws: how often designs were drawn again.
-        records: for each trial by number, what the solver told.
+        records: for each trial by number, the solver's record.
     """
 
     config: Config
@@ -113,34 +116,37 @@ def read_dataset(path: Path | str, split: Split | None = None, stress: bool = Tr
         raise InputError(f"{path}: there is no such file")
     try:
         with h5py.File(path, "r") as file:
-            told = file.attrs.get("schema")
-            if told != SCHEMA:
+            schema = file.attrs.get("schema")
+            if schema != SCHEMA:
                 raise InputError(
                     f"{path}: is an HDF5 file, but not a data set of this version "
-                    f"(schema {told!r}; this program reads {SCHEMA!r})"
+                    f"(schema {schema!r}; this program reads {SCHEMA!r})"
                 )
-            batches = [_batch(group, split, stress) for group in file["topologies"].values()]
+            material = Material.model_validate_json(file.attrs["material"])
+            groups = file["topologies"].values()
+            batches = [_batch(group, material, split, stress) for group in groups]
             attributes = dict(file.attrs)
             failures = [(int(k), str(why)) for k, why in json.loads(attributes.pop("failures"))]
             records = _records(file)
+            config = config_of(json.loads(attributes.pop("config")), str(path))
+            sha256, redraws = str(attributes.pop("sha256")), int(attributes.pop("redraws"))
     except OSError as error:
         raise InputError(f"{path}: is not an HDF5 file, or is damaged ({error})") from error
     except (KeyError, ValueError, IndexError, TypeError) as error:
         raise InputError(f"{path}: is damaged: {error}") from error
-    kept = [batch for batch in batches if len(batch)]
     return Dataset(
-        config_of(json.loads(attributes.pop("config")), str(path)),
-        str(attributes.pop("sha256")),
-        kept,
+        config,
+        sha256,
+        [batch for batch in batches if len(batch)],
         attributes,
         failures,
-        int(attributes.pop("redraws")),
+        redraws,
         records,
     )
 
 
 def checksum(path: Path | str) -> tuple[str, str]:
-    """Return the SHA-256 that a packed set tells of its contents, and the one they have."""
+    """Return the SHA-256 that a packed set states of its contents, and the one they have."""
     with h5py.File(path, "r") as file:
         return str(file.attrs["sha256"]), digest(file)
 
@@ -163,7 +169,7 @@ def digest(file: h5py.File) -> str:
     return sha.hexdigest()
 
 
-def _batch(group: h5py.Group, split: Split | None, stress: bool) -> Batch:
+def _batch(group: h5py.Group, material: Material, split: Split | None, stress: bool) -> Batch:
     test = group["test"][...].astype(bool)
     which = np.flatnonzero(np.ones_like(test) if split is None else test == (split == "test"))
     beams = group["beams"][...].astype(np.int64)
@@ -177,7 +183,8 @@ def _batch(group: h5py.Group, split: Split | None, stress: bool) -> Batch:
         stress=_stress(group["stress"], which) if stress else None,
         numbers=group["numbers"][...].astype(np.int64)[which],
         test=test[which],
-        material=str(group.attrs["material"]),
+        material=material,
+        reference=str(group.attrs["material"]),
     )
 
 

@@ -12,16 +12,18 @@ solution is the same and slender, turning beams need less than half of Newton's 
 
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from skfem import Basis, ElementHexS2, MeshHex
 
-import simulearn.compiled  # noqa: F401  double precision, before any array is made
 from simulearn.fea.laws import Law
 from simulearn.fea.laws.law import inverse_transpose
 from simulearn.fea.solid import Solid
 from simulearn.fea.structure import PAIRS
+
+jax.config.update("jax_enable_x64", True)
 
 
 class Points(NamedTuple):

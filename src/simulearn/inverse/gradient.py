@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.problem import Did, Found, Problem
-from simulearn.learn.equilibrium import Equilibrium
-from simulearn.learn.model import Designs
-from simulearn.learn.shapes import TOLERANCE
-from simulearn.learn.slopes import Slopes, slopes
+from simulearn.learn.common.model import Designs
+from simulearn.learn.equilibrium.model import Equilibrium
+from simulearn.learn.equilibrium.prediction import TOLERANCE
+from simulearn.learn.equilibrium.slopes import Slopes, slopes
 
 Array = NDArray[np.float64]
 Value = Callable[[Array], tuple[float, Array]]  # variables -> value, gradient

@@ -103,7 +103,7 @@ def _ranked(
 ) -> Ranking:
     space = Space.of(grid, free, getattr(engine, "training", None))
     moving = Goals.centres(np.zeros((len(grid.joints), 3)))
-    placed = places(engine, goals or moving, space.grid.material, cancel)
+    placed = places(engine, goals or moving, cancel)
     problem = Problem(space, goals or moving, placed, cancel=cancel)
     x, a = space.start
     tried = changes(space, a)

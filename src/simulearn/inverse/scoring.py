@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from simulearn.errors import Cancel
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
-from simulearn.learn.model import Designs, last_frame
-from simulearn.material import load_material
+from simulearn.learn.common.model import Designs, last_frame
 from simulearn.simulate import Failure, Simulator
 from simulearn.simulate.learned import Learned
 
@@ -22,28 +21,24 @@ Array = NDArray[np.float64]
 Places = Callable[[Designs], Array]  # designs -> (T, G, 3), NaN where there is no answer
 
 
-def places(engine: Simulator, goals: Goals, material: str, cancel: Cancel | None = None) -> Places:
+def places(engine: Simulator, goals: Goals, cancel: Cancel | None = None) -> Places:
     """Return the function that gives the places of the goals' vertices in the last frame.
 
     Args:
         engine: the simulator.
         goals: whose vertices.
-        material: name of the designs' material system, or the path of its file.
         cancel: stops the simulation of a batch; the function raises CancelledError.
-
-    Raises:
-        InputError: a learned engine has not learnt the material.
     """
     if isinstance(engine, Learned):
-        engine.require(load_material(material))
         return _together(engine, goals)
-    return _one_by_one(engine, goals, material, cancel)
+    return _one_by_one(engine, goals, cancel)
 
 
 def _together(engine: Learned, goals: Goals) -> Places:
     card, model = engine.bundle.card, engine.bundle.model
 
     def together(designs: Designs) -> Array:
+        engine.require(designs.material)
         last = last_frame(model, replace(designs, material=card.material))
         points = goals.points(last.joints, last.sections)
         answered = last.converged & np.isfinite(points).all(axis=(1, 2))
@@ -52,9 +47,9 @@ def _together(engine: Learned, goals: Goals) -> Places:
     return together
 
 
-def _one_by_one(engine: Simulator, goals: Goals, material: str, cancel: Cancel | None) -> Places:
+def _one_by_one(engine: Simulator, goals: Goals, cancel: Cancel | None) -> Places:
     def one_by_one(designs: Designs) -> Array:
-        outcomes = engine.simulate(grids(designs, material), cancel=cancel)
+        outcomes = engine.simulate(grids(designs), cancel=cancel)
         points = np.full((len(designs), len(goals), 3), np.nan)
         for t, outcome in enumerate(outcomes):
             if not isinstance(outcome, Failure):
@@ -66,9 +61,9 @@ def _one_by_one(engine: Simulator, goals: Goals, material: str, cancel: Cancel |
     return one_by_one
 
 
-def grids(designs: Designs, material: str) -> list[Grid]:
-    """Return designs as grids of a material."""
+def grids(designs: Designs) -> list[Grid]:
+    """Return designs as grids."""
     return [
-        Grid(flat, designs.beams, ratios, designs.fixed, material)
+        Grid(flat, designs.beams, ratios, designs.fixed, designs.reference)
         for flat, ratios in zip(designs.flat, designs.actuators, strict=True)
     ]

@@ -222,7 +222,7 @@ class Search:
         return Problem(
             space,
             goals,
-            places(self.engine, goals, space.grid.material, _Until(self.cancel, until)),
+            places(self.engine, goals, _Until(self.cancel, until)),
             model=model,
             source=drawing(len(self.steps)),  # other numbers in each phase and after each stop
             until=until,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.grid import Checks, Grid, TrainingRange, check_designs, validate
 from simulearn.inverse.task import Free
-from simulearn.learn.model import Designs
+from simulearn.learn.common.model import Designs
 from simulearn.material import Material, load_material
 
 Array = NDArray[np.float64]
@@ -116,12 +116,12 @@ class Space:
         ratios = np.repeat(grid.actuators[None], len(a), axis=0)
         for q, group in enumerate(self.groups):
             ratios[:, group] = a[:, q, None]
-        return Designs(grid.beams, grid.fixed, flat, ratios, grid.material)
+        return Designs(grid.beams, grid.fixed, flat, ratios, self._material, grid.material)
 
     def grid_at(self, x: Array, a: Array) -> Grid:
         """Return the grid of a point (P,), (Q,)."""
         one = self.designs(x[None], a[None])
-        return Grid(one.flat[0], one.beams, one.actuators[0], one.fixed, one.material)
+        return Grid(one.flat[0], one.beams, one.actuators[0], one.fixed, one.reference)
 
     def valid(self, x: Array, a: Array) -> Mask:
         """Return which of the points (T, P), (T, Q) are valid grids."""

@@ -12,20 +12,22 @@ from typing import Any
 
 from simulearn.dataset import Dataset
 from simulearn.files import replacing
-from simulearn.learn import stages
-from simulearn.learn.bundle import Bundle, save_bundle
-from simulearn.learn.config import Config, Fit
-from simulearn.learn.fit import fit
-from simulearn.learn.model import Model
-from simulearn.learn.train import Row, split, train, validate
+from simulearn.learn.common.bundle import Bundle, save_bundle
+from simulearn.learn.common.model import Model
+from simulearn.learn.common.trials import split, validate
+from simulearn.learn.equilibrium import train as equilibrium
+from simulearn.learn.equilibrium.config import EquilibriumConfig
+from simulearn.learn.equilibrium.stages import StageRow
+from simulearn.learn.paper import train as paper
+from simulearn.learn.paper.config import PaperConfig
 
-Rows = Sequence[Row] | Sequence[stages.Row]
+Rows = Sequence[paper.EpochRow] | Sequence[StageRow]
 Draw = Callable[[Any, Path], None]
 Progress = Callable[[Any, int, int], None]  # (last row or None, updates done, updates in all)
 
 
 def run(
-    config: Config | Fit,
+    config: PaperConfig | EquilibriumConfig,
     data: Dataset,
     folder: Path,
     progress: Progress,
@@ -46,7 +48,7 @@ def run(
     """
     rows: list[Any] = []
 
-    def tell(row: Any, done: int, total: int) -> None:
+    def report(row: Any, done: int, total: int) -> None:
         if row is not None and row not in rows:
             rows.append(row)
             write_curve(rows, folder, draw)
@@ -54,11 +56,11 @@ def run(
 
     model: Model
     every: Rows
-    if isinstance(config, Fit):
-        model, every = fit(config, data, folder, tell)
+    if isinstance(config, EquilibriumConfig):
+        model, every = equilibrium.train(config, data, folder, report)
         percent = validate(model, split(config, data)[1])
     else:
-        model, every = train(config, data, folder / "checkpoint.safetensors", tell)
+        model, every = paper.train(config, data, folder / "checkpoint.safetensors", report)
         percent = every[-1].validation_percent
     write_curve(every, folder, draw)
     bundle = save_bundle(folder / "model", model, config.name, data, config.model_dump(mode="json"))
@@ -68,10 +70,13 @@ def run(
 def write_curve(rows: Rows, folder: Path, draw: Draw | None) -> None:
     """Write the loss curve."""
     names = [field.name for field in fields(rows[0])]
-    text = lambda value: value if isinstance(value, str) else f"{value:.6g}"  # noqa: E731
     lines = [",".join(names)]
-    lines += [",".join(map(text, asdict(row).values())) for row in rows]
+    lines += [",".join(map(_text, asdict(row).values())) for row in rows]
     with replacing(folder / "loss.csv") as temporary:
         temporary.write_text("\n".join(lines) + "\n", "utf-8")
     if draw is not None:
         draw(rows, folder / "loss.png")
+
+
+def _text(value: str | float) -> str:
+    return value if isinstance(value, str) else f"{value:.6g}"

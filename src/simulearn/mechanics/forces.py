@@ -1,4 +1,4 @@
-"""Forces of halves of beams between joints, at any poses.
+"""Forces of half-beams between joints, at any poses.
 
 Each half stores d.K.d / 2, d being the twist by which its middle has left its place at rest:
 exact for any rotation, and for the constant strains of the rest itself.
@@ -15,21 +15,21 @@ import jax.numpy as jnp
 import numpy as np
 
 from simulearn.mechanics.poses import Array, Pose, exp_se3, inverse_right, log_se3
-from simulearn.mechanics.skeleton import Skeleton
+from simulearn.mechanics.topology import Topology
 
 UP = np.array([0.0, 0.0, 1.0])
 # The axes of a beam's middle as its two halves see them.
 FLIP = np.stack([np.eye(3), np.diag([-1.0, -1.0, 1.0])])
 
 
-class State(NamedTuple):
+class BeamState(NamedTuple):
     """Poses in space; joints (J), middles of beams in the axes of half 0 (B)."""
 
     joints: Pose
     middles: Pose
 
 
-class Elements(NamedTuple):
+class HalfBeams(NamedTuple):
     """Halves of beams and loads at one released fraction.
 
     Attributes:
@@ -65,7 +65,7 @@ class Forces(NamedTuple):
     middles: Array
 
 
-class Pulls(NamedTuple):
+class EndForces(NamedTuple):
     """What the halves (2, B) do to their ends.
 
     Attributes:
@@ -79,7 +79,7 @@ class Pulls(NamedTuple):
     lever: Array
 
 
-class Hung(NamedTuple):
+class CarriedWeight(NamedTuple):
     """Weight that bodies carry: its sum (...) N, and its first moment (..., 3) N mm."""
 
     weight: Array
@@ -92,30 +92,30 @@ class Hung(NamedTuple):
         return jnp.concatenate([lift, jnp.cross(self.lever, UP)], -1)
 
 
-def each(function: Callable[..., Pose], *states: State) -> State:
+def each(function: Callable[..., Pose], *states: BeamState) -> BeamState:
     """Return a function of the poses of joints, and of middles."""
-    return State(*(function(*poses) for poses in zip(*states, strict=True)))
+    return BeamState(*(function(*poses) for poses in zip(*states, strict=True)))
 
 
-def halves(bones: Skeleton, state: State) -> Halves:
+def halves(topology: Topology, state: BeamState) -> Halves:
     """Return the poses that each half joins."""
-    joint = Pose(state.joints.R[bones.ends], state.joints.p[bones.ends])
+    joint = Pose(state.joints.R[topology.ends], state.joints.p[topology.ends])
     return Halves(joint, Pose(state.middles.R @ FLIP[:, None], jnp.stack([state.middles.p] * 2)))
 
 
-def moved(state: State, joints: Array, middles: Array) -> State:
+def moved(state: BeamState, joints: Array, middles: Array) -> BeamState:
     """Return a state after motions of joints (J, 6) and middles (B, 6)."""
-    return State(exp_se3(joints) @ state.joints, exp_se3(middles) @ state.middles)
+    return BeamState(exp_se3(joints) @ state.joints, exp_se3(middles) @ state.middles)
 
 
-def twists(bones: Skeleton, elements: Elements, state: State) -> Array:
+def twists(topology: Topology, elements: HalfBeams, state: BeamState) -> Array:
     """Return how far the halves' middles have left their places at rest: (2, B, 6)."""
-    return _twists(elements, halves(bones, state))
+    return _twists(elements, halves(topology, state))
 
 
-def _twists(el: Elements, at: Halves) -> Array:
-    seen = (at.joint @ Pose(el.frame, el.face)).inverse @ at.middle
-    return log_se3(el.rest.inverse @ seen)
+def _twists(half_beams: HalfBeams, at: Halves) -> Array:
+    relative = (at.joint @ Pose(half_beams.frame, half_beams.face)).inverse @ at.middle
+    return log_se3(half_beams.rest.inverse @ relative)
 
 
 def _change(d: Array, at: Halves) -> Array:
@@ -132,34 +132,40 @@ def block(a: Array, b: Array, c: Array, d: Array) -> Array:
     return jnp.concatenate([jnp.concatenate([a, b], -1), jnp.concatenate([c, d], -1)], -2)
 
 
-def pulls(el: Elements, at: Halves) -> Pulls:
+def end_forces(half_beams: HalfBeams, at: Halves) -> EndForces:
     """Return what halves do to their ends."""
-    d = _twists(el, at)
+    d = _twists(half_beams, at)
     change = _change(d, at)
-    wrench = jnp.einsum("hbji,hbj->hbi", change, jnp.einsum("hbij,hbj->hbi", el.stiffness, d))
+    wrench = jnp.einsum(
+        "hbji,hbj->hbi", change, jnp.einsum("hbij,hbj->hbi", half_beams.stiffness, d)
+    )
     # Weight, as a cubic deflection shares it between the ends; couples on middles cancel.
-    share = (el.length * el.line / 2)[:, None]
-    couple = (el.length**2 * el.line / 12)[:, None]
-    local = share * el.face + couple * el.frame[..., 0]
+    share = (half_beams.length * half_beams.line / 2)[:, None]
+    couple = (half_beams.length**2 * half_beams.line / 12)[:, None]
+    local = share * half_beams.face + couple * half_beams.frame[..., 0]
     lever = share * at.joint.p + jnp.einsum("hbij,hbj->hbi", at.joint.R, local)
-    return Pulls(wrench, change, lever)
+    return EndForces(wrench, change, lever)
 
 
-def hung(bones: Skeleton, el: Elements, state: State, levers: Array) -> tuple[Hung, Hung]:
-    """Return the weight that joints (J) carry, levers being those of `Pulls`, and middles (B)."""
-    line = el.length * el.line
-    weight = el.weight.at[bones.ends].add(line / 2)
-    lever = (el.weight[:, None] * state.joints.p).at[bones.ends].add(levers)
-    return Hung(weight, lever), Hung(line, line[:, None] * state.middles.p)
+def carried_weight(
+    topology: Topology, half_beams: HalfBeams, state: BeamState, levers: Array
+) -> tuple[CarriedWeight, CarriedWeight]:
+    """Return the weight that joints (J) and middles (B) carry, with the levers of `EndForces`."""
+    line = half_beams.length * half_beams.line
+    weight = half_beams.weight.at[topology.ends].add(line / 2)
+    lever = (half_beams.weight[:, None] * state.joints.p).at[topology.ends].add(levers)
+    return CarriedWeight(weight, lever), CarriedWeight(line, line[:, None] * state.middles.p)
 
 
-def gathered(bones: Skeleton, told: Pulls, loads: tuple[Hung, Hung]) -> Forces:
+def gathered(
+    topology: Topology, ends: EndForces, loads: tuple[CarriedWeight, CarriedWeight]
+) -> Forces:
     """Return the wrenches on joints and middles, given what halves do and what hangs on them."""
     joints, middles = (load.wrench for load in loads)
-    return Forces(joints.at[bones.ends].add(-told.wrench), middles + told.wrench.sum(0))
+    return Forces(joints.at[topology.ends].add(-ends.wrench), middles + ends.wrench.sum(0))
 
 
-def forces(bones: Skeleton, el: Elements, state: State) -> Forces:
+def forces(topology: Topology, half_beams: HalfBeams, state: BeamState) -> Forces:
     """Return the wrenches out of balance in a state: the slope of its energy."""
-    told = pulls(el, halves(bones, state))
-    return gathered(bones, told, hung(bones, el, state, told.lever))
+    ends = end_forces(half_beams, halves(topology, state))
+    return gathered(topology, ends, carried_weight(topology, half_beams, state, ends.lever))

@@ -18,8 +18,6 @@ import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 from numpy.polynomial.polynomial import Polynomial
 
-import simulearn.compiled  # noqa: F401  double precision, before any array is made
-
 Array = jax.Array
 
 TERMS = 9  # of the series of sine and cosine: exact to 1e-9 up to two radians

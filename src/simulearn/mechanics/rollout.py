@@ -7,15 +7,16 @@ import jax.numpy as jnp
 import numpy as np
 
 from simulearn.material import Material
-from simulearn.mechanics.equilibrium import settle
-from simulearn.mechanics.forces import Elements, State, each
+from simulearn.mechanics.equilibrium import solve_equilibrium
+from simulearn.mechanics.forces import BeamState, HalfBeams, each
+from simulearn.mechanics.model import SectionModel
 from simulearn.mechanics.poses import Array, Pose
-from simulearn.mechanics.section import Law, in_s, rest, tilted
-from simulearn.mechanics.skeleton import Flat, Skeleton
+from simulearn.mechanics.section import in_s, rest, tilted
 from simulearn.mechanics.stiffness import inverse_of_blocks
+from simulearn.mechanics.topology import FlatGeometry, Topology
+from simulearn.schedule import SCHEDULE
 
-STEPS = 10
-RELEASED = (*(k / STEPS for k in range(1, STEPS + 1)), 1.0)  # frames 1 to 11
+RELEASED = SCHEDULE.released[1:]  # frames 1 to 11
 
 
 class Loads(NamedTuple):
@@ -41,69 +42,90 @@ def loads(material: Material) -> Loads:
         jnp.array(material.gravity.body_force),
         jnp.array(section.width * section.thickness),
         jnp.array(section.thickness),
-        jnp.array([1.0] * STEPS + [1 + material.creep.amplitude]),
+        jnp.array(SCHEDULE.gravity(material.creep.amplitude)[1:]),
     )
 
 
-def elements(
-    law: Law, bones: Skeleton, plan: Flat, ratio: Array, load: Loads, s: Array, gravity: Array
-) -> Elements:
+def half_beams_at(
+    section_model: SectionModel,
+    topology: Topology,
+    geometry: FlatGeometry,
+    ratio: Array,
+    load: Loads,
+    s: Array,
+    gravity: Array,
+) -> HalfBeams:
     """Return the halves of a grid at a released fraction s and a multiple of gravity."""
-    held = (bones.ends == bones.fixed).astype(plan.length.dtype)
-    free, compliance = rest(law, plan.length, ratio, s)
+    held = (topology.ends == topology.fixed).astype(geometry.length.dtype)
+    free, compliance = rest(section_model, geometry.length, ratio, s)
     body = load.body * gravity
-    return Elements(
-        rest=tilted(law, held, s) @ free,
+    return HalfBeams(
+        rest=tilted(section_model, held, s) @ free,
         stiffness=jnp.stack([inverse_of_blocks(compliance)] * 2),
-        face=plan.face * (1 + in_s(law.plane, s)),
-        frame=plan.frame,
-        length=plan.length / 2,
+        face=geometry.face * (1 + in_s(section_model.plane, s)),
+        frame=geometry.frame,
+        length=geometry.length / 2,
         line=body * load.section,
-        weight=body * load.thickness * plan.area,
+        weight=body * load.thickness * geometry.area,
     )
 
 
-def every_frame(law: Law, bones: Skeleton, plan: Flat, ratio: Array, load: Loads) -> Elements:
+def every_frame(
+    section_model: SectionModel,
+    topology: Topology,
+    geometry: FlatGeometry,
+    ratio: Array,
+    load: Loads,
+) -> HalfBeams:
     """Return the halves of a grid in frames 1 to 11, stacked."""
-    one = lambda s, gravity: elements(law, bones, plan, ratio, load, s, gravity)  # noqa: E731
-    return jax.vmap(one)(jnp.array(RELEASED), load.gravity)
+
+    def frame(s: Array, gravity: Array) -> HalfBeams:
+        return half_beams_at(section_model, topology, geometry, ratio, load, s, gravity)
+
+    return jax.vmap(frame)(jnp.array(RELEASED), load.gravity)
 
 
-def start(plan: Flat) -> State:
+def start(geometry: FlatGeometry) -> BeamState:
     """Return the flat state."""
-    eye = jnp.broadcast_to(jnp.eye(3), (len(plan.centre), 3, 3))
-    return State(Pose(eye, plan.centre), Pose(plan.frame[0], plan.middle))
+    eye = jnp.broadcast_to(jnp.eye(3), (len(geometry.centre), 3, 3))
+    return BeamState(Pose(eye, geometry.centre), Pose(geometry.frame[0], geometry.middle))
 
 
 def rollout(
-    bones: Skeleton, plan: Flat, el: Elements, tolerance: float = 0.02, most: int = 60
-) -> tuple[State, Array]:
+    topology: Topology,
+    geometry: FlatGeometry,
+    half_beams: HalfBeams,
+    tolerance: float = 0.02,
+    most: int = 60,
+) -> tuple[BeamState, Array]:
     """Return the states of frames 1 to 11, stacked, and the last motion in each (11,) mm.
 
     Args:
-        bones: how the grid hangs together.
-        plan: the flat grid.
-        el: halves in frames 1 to 11, or fewer: equal steps of release, then creep.
+        topology: how the grid hangs together.
+        geometry: the flat grid.
+        half_beams: halves in frames 1 to 11, or fewer: equal steps of release, then creep.
         tolerance: of the last motion of an iteration, mm.
         most: iterations in a frame. The first, when a large grid hangs down, takes the most.
     """
 
     def frame(
-        path: tuple[State, State, State], now: tuple[Elements, Array]
-    ) -> tuple[tuple[State, State, State], tuple[State, Array]]:
+        path: tuple[BeamState, BeamState, BeamState], now: tuple[HalfBeams, Array]
+    ) -> tuple[tuple[BeamState, BeamState, BeamState], tuple[BeamState, Array]]:
         here, order = now
-        new, way = settle(bones, here, _onward(*path, order), tolerance, most)
-        return (*path[1:], new), (new, way)
+        new, motion = solve_equilibrium(topology, here, _onward(*path, order), tolerance, most)
+        return (*path[1:], new), (new, motion)
 
-    begin = start(plan)
+    begin = start(geometry)
     # No extrapolation over a jump in gravity.
-    order = np.clip(np.arange(len(el.weight)) - 1, 0, 2)
+    order = np.clip(np.arange(len(half_beams.weight)) - 1, 0, 2)
     order[-1] = 0
-    _, (states, ways) = jax.lax.scan(frame, (begin, begin, begin), (el, jnp.array(order)))
-    return states, ways
+    _, (states, motions) = jax.lax.scan(
+        frame, (begin, begin, begin), (half_beams, jnp.array(order))
+    )
+    return states, motions
 
 
-def _onward(first: State, second: State, third: State, order: Array) -> State:
+def _onward(first: BeamState, second: BeamState, third: BeamState, order: Array) -> BeamState:
     """Return the state after three, by a polynomial of order 0 to 2."""
 
     def go(a: Pose, b: Pose, c: Pose) -> Pose:
@@ -111,7 +133,7 @@ def _onward(first: State, second: State, third: State, order: Array) -> State:
         line = c.R @ last
         curve = line @ last @ jnp.swapaxes(before, -1, -2)
         turned = jnp.where(order > 1, curve, jnp.where(order > 0, line, c.R))
-        way = jnp.minimum(order, 1) * (c.p - b.p) + (order > 1) * (c.p - 2 * b.p + a.p)
-        return Pose(turned, c.p + way)
+        moved = jnp.minimum(order, 1) * (c.p - b.p) + (order > 1) * (c.p - 2 * b.p + a.p)
+        return Pose(turned, c.p + moved)
 
     return each(go, first, second, third)

@@ -13,19 +13,19 @@ from jax.scipy.linalg import cho_solve
 
 from simulearn.mechanics.forces import (
     UP,
-    Elements,
+    BeamState,
+    CarriedWeight,
     Forces,
+    HalfBeams,
     Halves,
-    Hung,
-    State,
     block,
+    carried_weight,
+    end_forces,
     gathered,
     halves,
-    hung,
-    pulls,
 )
 from simulearn.mechanics.poses import Array, exp_se3, hat
-from simulearn.mechanics.skeleton import Skeleton
+from simulearn.mechanics.topology import Topology
 
 
 class Factors(NamedTuple):
@@ -43,36 +43,36 @@ class Factors(NamedTuple):
 
 
 def balance(
-    bones: Skeleton, el: Elements, state: State, whole: Array | float = 0.0
+    topology: Topology, half_beams: HalfBeams, state: BeamState, full: Array | float = 0.0
 ) -> tuple[Forces, Factors]:
     """Return the forces out of balance in a state, and the factors of its stiffness.
 
     Args:
-        bones: how the grid hangs together.
-        el: halves and loads.
+        topology: how the grid hangs together.
+        half_beams: halves and loads.
         state: the poses.
-        whole: 1 to add the stiffness of forces that turn to Gauss-Newton's, which is that of 0.
+        full: 1 to add the stiffness of forces that turn to Gauss-Newton's, which is that of 0.
     """
-    told = pulls(el, halves(bones, state))
-    loads = hung(bones, el, state, told.lever)
-    spring = jnp.swapaxes(told.change, -1, -2) @ (el.stiffness @ told.change)
+    ends = end_forces(half_beams, halves(topology, state))
+    loads = carried_weight(topology, half_beams, state, ends.lever)
+    spring = jnp.swapaxes(ends.change, -1, -2) @ (half_beams.stiffness @ ends.change)
     # exp(-a) exp(b) = exp(b - a - [a, b] / 2 ...), so a wrench W adds -W.[a, b] / 2 to the energy.
-    force, moment = hat(told.wrench[..., :3]), hat(told.wrench[..., 3:])
+    force, moment = hat(ends.wrench[..., :3]), hat(ends.wrench[..., 3:])
     turned = block(jnp.zeros_like(force), force, force, moment)
-    coupled = whole / 2 * turned - spring  # of joints and middles
-    of_joints, of_middles = (whole * _swinging(load) for load in loads)
+    coupled = full / 2 * turned - spring  # of joints and middles
+    of_joints, of_middles = (full * _swinging(load) for load in loads)
     soft = inverse_of_blocks(spring[0] + spring[1] + of_middles)
     follow = -soft @ jnp.swapaxes(coupled, -1, -2)
     own, across = spring + coupled @ follow, coupled[0] @ follow[1]
-    a, b = 6 * bones.ends[..., None] + jnp.arange(6)
+    a, b = 6 * topology.ends[..., None] + jnp.arange(6)
     rows, columns = jnp.stack([a, b, a, b])[..., None], jnp.stack([a, b, b, a])[..., None, :]
     blocks = jnp.stack([own[0], own[1], across, jnp.swapaxes(across, -1, -2)])
-    size = 6 * len(el.weight)
-    six = 6 * jnp.arange(len(el.weight))[:, None] + jnp.arange(6)
+    size = 6 * len(half_beams.weight)
+    six = 6 * jnp.arange(len(half_beams.weight))[:, None] + jnp.arange(6)
     matrix = jnp.zeros((size, size)).at[rows, columns].add(blocks)
     matrix = matrix.at[six[..., None], six[:, None, :]].add(of_joints)
-    root = cholesky(_with_held(matrix, bones))
-    return gathered(bones, told, loads), Factors(root, soft, follow)
+    root = cholesky(_with_held(matrix, topology))
+    return gathered(topology, ends, loads), Factors(root, soft, follow)
 
 
 @jax.custom_jvp
@@ -91,56 +91,58 @@ def _cholesky_slope(at: tuple[Array], along: tuple[Array]) -> tuple[Array, Array
     return jax.jvp(jnp.linalg.cholesky, at, along)
 
 
-def solve(bones: Skeleton, forces: Forces, by: Factors) -> tuple[Array, Array]:
+def solve(topology: Topology, forces: Forces, by: Factors) -> tuple[Array, Array]:
     """Return the motions that would balance a linear grid: of joints (J, 6) and middles (B, 6)."""
     free = jnp.einsum("bij,bj->bi", by.soft, forces.middles)  # of a middle between held joints
     taken = jnp.einsum("hbji,bj->hbi", by.follow, forces.middles)  # by its joints
-    right = forces.joints.at[bones.ends].add(taken).at[bones.fixed].set(0.0)
+    right = forces.joints.at[topology.ends].add(taken).at[topology.fixed].set(0.0)
     joints = -cho_solve((by.root, True), right.ravel()).reshape(right.shape)
-    return joints, jnp.einsum("hbij,hbj->bi", by.follow, joints[bones.ends]) - free
+    return joints, jnp.einsum("hbij,hbj->bi", by.follow, joints[topology.ends]) - free
 
 
-def exact_stiffness(bones: Skeleton, el: Elements, state: State) -> Array:
+def exact_stiffness(topology: Topology, half_beams: HalfBeams, state: BeamState) -> Array:
     """Return how forces change with motions: (6 J + 6 B, ...), 1 for the fixed joint itself.
 
     With the terms that Gauss-Newton leaves out: by it equilibria change with what they depend on.
     """
-    here = halves(bones, state)
-    zero = jnp.zeros((*bones.ends.shape, 12))
+    here = halves(topology, state)
+    zero = jnp.zeros((*topology.ends.shape, 12))
 
     def shifted(x: Array) -> Array:
         at = Halves(exp_se3(x[..., :6]) @ here.joint, exp_se3(x[..., 6:]) @ here.middle)
-        told = pulls(el, at)
-        line = jnp.broadcast_to(el.length * el.line / 2, told.lever.shape[:-1])
-        joint = Hung(line, told.lever).wrench - told.wrench
-        middle = Hung(line, line[..., None] * at.middle.p).wrench + told.wrench
+        ends = end_forces(half_beams, at)
+        line = jnp.broadcast_to(half_beams.length * half_beams.line / 2, ends.lever.shape[:-1])
+        joint = CarriedWeight(line, ends.lever).wrench - ends.wrench
+        middle = CarriedWeight(line, line[..., None] * at.middle.p).wrench + ends.wrench
         return jnp.concatenate([joint, middle], -1)
 
-    push = lambda e: jax.jvp(shifted, (zero,), (jnp.broadcast_to(e, zero.shape),))[1]  # noqa: E731
+    def push(e: Array) -> Array:
+        return jax.jvp(shifted, (zero,), (jnp.broadcast_to(e, zero.shape),))[1]
+
     blocks = jnp.moveaxis(jax.vmap(push)(jnp.eye(12)), 0, -1)  # (2, B, 12, 12)
-    joints, beams = len(el.weight), bones.ends.shape[1]
+    joints, beams = len(half_beams.weight), topology.ends.shape[1]
     six = jnp.arange(6)
     middle = 6 * (joints + jnp.arange(beams))[None, :, None] + six
     index = jnp.concatenate(
-        [6 * bones.ends[..., None] + six, jnp.broadcast_to(middle, zero[..., :6].shape)], -1
+        [6 * topology.ends[..., None] + six, jnp.broadcast_to(middle, zero[..., :6].shape)], -1
     )
     size = 6 * (joints + beams)
-    whole = jnp.zeros((size, size)).at[index[..., :, None], index[..., None, :]].add(blocks)
+    matrix = jnp.zeros((size, size)).at[index[..., :, None], index[..., None, :]].add(blocks)
     # A joint's own weight: its moment changes as it moves.
-    lift, lever = el.weight[:, None, None] * hat(jnp.array(UP)), hat(state.joints.p)
+    lift, lever = half_beams.weight[:, None, None] * hat(jnp.array(UP)), hat(state.joints.p)
     none = jnp.zeros_like(lift)
     at = 6 * jnp.arange(joints)[:, None] + six
-    whole = whole.at[at[..., None], at[:, None, :]].add(block(none, none, -lift, lift @ lever))
-    return _with_held(whole, bones)
+    matrix = matrix.at[at[..., None], at[:, None, :]].add(block(none, none, -lift, lift @ lever))
+    return _with_held(matrix, topology)
 
 
-def _with_held(matrix: Array, bones: Skeleton) -> Array:
+def _with_held(matrix: Array, topology: Topology) -> Array:
     """Return the stiffness of a grid whose fixed joint is held."""
-    held = 6 * bones.fixed + jnp.arange(6)
+    held = 6 * topology.fixed + jnp.arange(6)
     return matrix.at[held, :].set(0.0).at[:, held].set(0.0).at[held, held].set(1.0)
 
 
-def _swinging(load: Hung) -> Array:
+def _swinging(load: CarriedWeight) -> Array:
     """Return the stiffness (..., 6, 6) of weight that hangs on bodies."""
     leant = load.lever[..., None] * UP
     turn = (leant + jnp.swapaxes(leant, -1, -2)) / 2

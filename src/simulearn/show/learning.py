@@ -16,11 +16,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from simulearn.dataset import Batch
-from simulearn.learn import stages
-from simulearn.learn.evaluate import Evaluation
-from simulearn.learn.model import Frames
-from simulearn.learn.train import Row
-from simulearn.material import load_material
+from simulearn.learn.common.evaluate import Evaluation
+from simulearn.learn.common.model import Frames
+from simulearn.learn.equilibrium.stages import StageRow
+from simulearn.learn.paper.train import EpochRow
 from simulearn.show import style
 from simulearn.show.camera import Camera
 from simulearn.simulate import Result, skin
@@ -31,7 +30,7 @@ PARTS = {"release": "release", "creep": "creep", "stress": "stress", "dislocatio
 SPACING = 3.0  # mm, length of the quadrilaterals along a beam
 
 
-def loss_picture(rows: Sequence[Row], name: str) -> Figure:
+def loss_picture(rows: Sequence[EpochRow], name: str) -> Figure:
     """Return the course of a training: parts of the loss, and the error of trials set aside."""
     figure = Figure(figsize=(7.2, 2.9), dpi=style.DPI, layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -64,7 +63,7 @@ def loss_picture(rows: Sequence[Row], name: str) -> Figure:
     return style.ink(figure)
 
 
-def stages_picture(rows: Sequence[stages.Row], name: str) -> Figure:
+def stages_picture(rows: Sequence[StageRow], name: str) -> Figure:
     """Return the course of a fitting: the loss of each of its stages."""
     parts = {
         stage: [row for row in rows if row.stage == stage] for stage in {r.stage: 0 for r in rows}
@@ -145,7 +144,7 @@ def both(batch: Batch, frames: Frames, t: int) -> tuple[Result, Result]:
 
     def result(joints: NDArray[Any], sections: NDArray[Any]) -> Result:
         corners = np.asarray(joints, float), np.asarray(sections, float)
-        return Result(grid, "", *corners, None, 0.0, load_material(grid.material).identity)
+        return Result(grid, "", *corners, None, 0.0, batch.material.identity)
 
     return (
         result(batch.joints[t], batch.sections[t]),

@@ -11,9 +11,9 @@ import numpy as np
 
 from simulearn.errors import Cancel, InputError, Message, stop_if
 from simulearn.grid import Grid, TrainingRange
-from simulearn.learn.bundle import Bundle, bundle_of
-from simulearn.learn.model import Designs, Frames
-from simulearn.material import Identity, Material, load_material
+from simulearn.learn.common.bundle import Bundle, bundle_of
+from simulearn.learn.common.model import Designs, Frames
+from simulearn.material import Material
 from simulearn.simulate.checked import Checked, check_all
 from simulearn.simulate.engines import in_order
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
@@ -44,7 +44,7 @@ class Learned:
             InputError: there is no such model, or it is damaged.
         """
         bundle = bundle_of(model)
-        return cls(_loaded(bundle.path.resolve(), _identity(bundle).digest))
+        return cls(_loaded(bundle.path.resolve(), bundle.identity.digest))
 
     @property
     def training(self) -> TrainingRange:
@@ -54,8 +54,7 @@ class Learned:
     @property
     def material(self) -> Material:
         """The material system that the model has learnt."""
-        material = self.bundle.card.material
-        return load_material(material) if isinstance(material, str) else material
+        return self.bundle.card.material
 
     def simulate(
         self,
@@ -115,7 +114,7 @@ class Learned:
             stress=None if frames.stress is None else frames.stress[t],
             seconds=seconds,
             material=one.material.identity,
-            model=_identity(self.bundle),
+            model=self.bundle.identity,
             bound_mm=None if frames.bound_mm is None else float(frames.bound_mm[t]),
             warnings=(*one.warnings, *self._unlike(one.grid)),
             record={"kind": self.bundle.card.kind},
@@ -123,10 +122,10 @@ class Learned:
 
     def _unlike(self, grid: Grid) -> Iterator[Message]:
         """Yield a warning where a grid's topology is not the one that was learnt."""
-        trust = getattr(self.bundle.model, "trust", None)
-        if trust is None:
+        bound = getattr(self.bundle.model, "bound", None)
+        if bound is None:
             return
-        joints, beams = (int(n) for n in trust.counts)
+        joints, beams = (int(n) for n in bound.counts)
         if (len(grid.joints), len(grid.beams)) != (joints, beams):
             yield Message(
                 "topology-unlike",
@@ -160,13 +159,7 @@ def _loaded(path: Path, digest: str) -> Bundle:
     return bundle
 
 
-def _identity(bundle: Bundle) -> Identity:
-    return getattr(bundle, "identity", None) or Identity(
-        name=bundle.card.name, digest=bundle.card.weights
-    )
-
-
-def designs_of(grids: Sequence[Grid], material: str) -> Designs:
+def designs_of(grids: Sequence[Grid], material: Material) -> Designs:
     """Return grids of one topology as designs of a material."""
     return Designs(
         beams=grids[0].beams,

@@ -1,0 +1,1 @@
+"""What all models share: their interface, bundles, evaluation, and the first frame."""

@@ -1,0 +1,142 @@
+"""What a learned simulator is: designs in, twelve frames out, and its weights as named arrays.
+
+A kind of model is a class that has `kind`, `rollout`, `to_arrays`,
+`config` and `from_arrays`; `KINDS` names them. Everything else (bundles, evaluation, the engine
+`learned`, the conformance suite) knows only this.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from importlib import import_module
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.material import Material, load_material
+
+
+def standard() -> Material:
+    """Return the material that designs have unless another is named."""
+    return load_material("pla-hot-water")
+
+
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """Designs of one topology, T of them.
+
+    Attributes:
+        beams: (B, 2) joint indices, start and end.
+        fixed: index of the fixed joint.
+        flat: (T, J, 2) mm, joints of the flat grids, the fixed joint at the origin.
+        actuators: (T, B) signed ratios.
+        material: the material system.
+        reference: name or path of it, as grids have it.
+    """
+
+    beams: NDArray[np.int64]
+    fixed: int
+    flat: NDArray[np.float64]
+    actuators: NDArray[np.float64]
+    material: Material = field(default_factory=standard)
+    reference: str = "pla-hot-water"
+
+    def __len__(self) -> int:
+        return len(self.flat)
+
+    def take(self, which: Any) -> "Designs":
+        """Return the designs of an index or mask over T."""
+        return replace(self, flat=self.flat[which], actuators=self.actuators[which])
+
+    @property
+    def dimensions(self) -> NDArray[np.float64]:
+        """(T,) largest distance from the fixed joint to another, mm."""
+        return np.linalg.norm(self.flat - self.flat[:, [self.fixed]], axis=-1).max(axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """The prediction of a model; mm, MPa, +z up; corners in the order of `simulate.Result`.
+
+    Attributes:
+        joints: (T, 12, J, 8, 3) corners of the joints.
+        sections: (T, 12, B, 3, 4, 3) corners of the beams' sections.
+        stress: (T, 12, B, 4, 4, 6), or None where a model has none.
+        bound_mm: (T,) estimate of the mean vertex error of the last frame, or None.
+        converged: (T,) whether there is a prediction; a model without iterations always has one.
+    """
+
+    joints: NDArray[np.float64]
+    sections: NDArray[np.float64]
+    stress: NDArray[np.float64] | None
+    bound_mm: NDArray[np.float64] | None
+    converged: NDArray[np.bool_]
+
+
+class Model(Protocol):
+    """A learned simulator."""
+
+    @property
+    def kind(self) -> str:
+        """One of `KINDS`."""
+        ...
+
+    def rollout(self, designs: Designs) -> Frames:
+        """Return the twelve frames of designs of one topology."""
+        ...
+
+    def config(self) -> dict[str, Any]:
+        """Return the architecture as plain data, from which `from_arrays` builds it again."""
+        ...
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Return all weights and normalisers by name."""
+        ...
+
+
+class Last(NamedTuple):
+    """The last frame alone: corners of joints (T, J, 8, 3) and sections (T, B, 3, 4, 3), mm.
+
+    Attributes:
+        converged: (T,) whether there is a prediction.
+    """
+
+    joints: NDArray[np.float64]
+    sections: NDArray[np.float64]
+    converged: NDArray[np.bool_]
+
+
+def last_frame(model: Model, designs: Designs) -> Last:
+    """Return the last frame of designs of one topology; some models need no others for it."""
+    if isinstance(model, _Quick):
+        return model.last(designs)
+    frames = model.rollout(designs)
+    return Last(frames.joints[:, -1], frames.sections[:, -1], frames.converged)
+
+
+@runtime_checkable
+class _Quick(Protocol):
+    def last(self, designs: Designs) -> Last: ...
+
+
+Builder = Callable[[Mapping[str, Any], Mapping[str, NDArray[Any]], Material], Model]
+
+KINDS = {  # kind -> module, class
+    "paper": ("simulearn.learn.paper.model", "Paper"),
+    "beams": ("simulearn.learn.equilibrium.model", "Equilibrium"),
+    "equilibrium": ("simulearn.learn.equilibrium.model", "Equilibrium"),
+}
+
+
+def builder(kind: str) -> Builder:
+    """Return `from_arrays` of a kind: it builds a model of its config, arrays and material.
+
+    Raises:
+        InputError: there is no such kind.
+    """
+    if kind not in KINDS:
+        raise InputError(f'a model of kind "{kind}" is not known; known are {", ".join(KINDS)}')
+    module, name = KINDS[kind]
+    build: Builder = getattr(import_module(module), name).from_arrays
+    return build

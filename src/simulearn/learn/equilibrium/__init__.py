@@ -1,0 +1,1 @@
+"""Models that solve for equilibrium: beam mechanics, corrected by a small network."""

@@ -1,0 +1,105 @@
+"""Predictions compiled by JAX for each topology: small batches on all cores, kept between runs."""
+
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache, partial
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.compiled import double_precision
+from simulearn.files import cores
+from simulearn.learn.common.model import Designs
+from simulearn.learn.equilibrium import stresses
+from simulearn.learn.equilibrium.parameters import Parameters
+from simulearn.learn.equilibrium.prediction import Prediction
+from simulearn.learn.equilibrium.prediction import predict as predict_frames
+from simulearn.material import Material
+from simulearn.mechanics.corners import local_corners, placed
+from simulearn.mechanics.rollout import loads, start
+from simulearn.mechanics.topology import FlatGeometry, Topology, flat_geometry, topologies
+from simulearn.traced import Traced
+
+AT_ONCE = 4  # designs in one call of a kernel
+
+
+@double_precision
+def predict(
+    parameters: Parameters, material: Material, designs: Designs, last: bool = False
+) -> Prediction:
+    """Return all twelve frames of designs of one topology, stacked along T, or the last alone.
+
+    Args:
+        parameters: fitted.
+        material: that they were fitted to.
+        designs: T of them.
+        last: whether only the last frame is needed.
+    """
+    count = len(designs)
+    topology = topologies(designs.beams, designs.fixed, designs.flat)
+    if last:
+        parameters = parameters._replace(stress=None)
+    kernel = partial(_kernel(material, last), parameters)
+    size = AT_ONCE if count >= AT_ONCE else 1
+    parts = [np.arange(a, a + size) % count for a in range(0, count, size)]
+
+    @double_precision
+    def run(which: NDArray[np.int64]) -> Any:
+        some = Topology(*(x[which] for x in topology))
+        return jax.tree.map(np.asarray, kernel(some, designs.flat[which], designs.actuators[which]))
+
+    if len(parts) > 1:
+        with ThreadPoolExecutor(min(cores(), len(parts))) as pool:
+            results = list(pool.map(run, parts))
+    else:
+        results = [run(which) for which in parts]
+    return Prediction(*jax.tree.map(lambda *x: np.concatenate(x)[:count], *results))
+
+
+@lru_cache(maxsize=8)
+def _kernel(material: Material, last: bool) -> Traced:
+    """Return the compiled function: parameters, topologies, joints, ratios -> prediction."""
+
+    def kernel(parameters: Parameters, topology: Topology, joints: Any, ratio: Any) -> Any:
+        one = partial(_last if last else _frames, parameters, material)
+        return tuple(jax.vmap(one)(topology, joints, ratio))
+
+    return Traced(f"equilibrium {material.digest} {last}", kernel)
+
+
+def _last(
+    parameters: Parameters, material: Material, topology: Topology, joints: Any, ratio: Any
+) -> Prediction:
+    """Return the last frame of a design."""
+    geometry = flat_geometry(topology, joints, material.section)
+    return predict_frames(
+        parameters, topology, geometry, ratio, loads(material), material, last=True
+    )
+
+
+def _frames(
+    parameters: Parameters, material: Material, topology: Topology, joints: Any, ratio: Any
+) -> Prediction:
+    """Return all twelve frames of a design."""
+    geometry = flat_geometry(topology, joints, material.section)
+    later = predict_frames(parameters, topology, geometry, ratio, loads(material), material)
+    at, sections = first_frame(parameters, topology, geometry)
+    stress = later.stress
+    if stress is not None:
+        printed = stresses.printed(material, geometry, ratio)
+        first = stresses.in_space(topology, geometry, start(geometry), printed)
+        stress = jnp.concatenate([first[None], stress])
+    return later._replace(
+        joints=jnp.concatenate([at[None], later.joints]),
+        sections=jnp.concatenate([sections[None], later.sections]),
+        stress=stress,
+    )
+
+
+def first_frame(parameters: Parameters, topology: Topology, geometry: FlatGeometry) -> Any:
+    """Return the corners of the flat grid: of joints, of sections."""
+    zero = jnp.zeros((*topology.ends.shape, 4, 3))
+    own = local_corners(parameters.section_model, topology, geometry, jnp.array(0.0), zero, zero)
+    return placed(topology, geometry, start(geometry), *own)

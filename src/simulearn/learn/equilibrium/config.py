@@ -1,0 +1,55 @@
+"""The configuration of a training run of a model that solves for equilibrium."""
+
+from typing import Literal
+
+from pydantic import model_validator
+
+from simulearn.learn.common.config import Count, Data, Positive, RunConfig
+
+
+class Stage(Data):
+    """A part of the fitting of a model that solves for equilibrium.
+
+    Attributes:
+        updates: of what is fitted.
+        batch: pairs of trial and frame in each.
+        rate: highest learning rate; it falls as a cosine.
+    """
+
+    updates: Count
+    batch: Count = 32
+    rate: Positive = 2e-3
+
+
+class EquilibriumConfig(RunConfig):
+    """A training run of a model that solves for equilibrium, stage by stage.
+
+    Besides what all runs have; see `RunConfig`.
+
+    Attributes:
+        kind: of the model; "beams" has no network.
+        calibration: the data set that the error estimate is fitted to, or none.
+        width, message, rounds: of the network; see `parameters.network_shapes`.
+        law: fits the section.
+        network: fits the network that corrects it.
+        polish: goes on with it by the full tangent; see `first_order`.
+        stress: fits the network that predicts stresses.
+    """
+
+    kind: Literal["equilibrium", "beams"]
+    calibration: str | None = None
+    width: Count = 64
+    message: Count = 16
+    rounds: Count = 2
+    law: Stage
+    network: Stage | None = None
+    polish: Stage | None = None
+    stress: Stage | None = None
+
+    @model_validator(mode="after")
+    def _network_by_kind(self) -> "EquilibriumConfig":
+        if (self.kind == "equilibrium") != (self.network is not None):
+            raise ValueError("kind equilibrium has a network, kind beams has none")
+        if self.polish is not None and self.network is None:
+            raise ValueError("polish goes on with a network, and there is none")
+        return self

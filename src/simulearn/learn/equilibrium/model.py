@@ -1,0 +1,141 @@
+"""The models that solve for equilibrium: `beams`, mechanics alone, and `equilibrium`, the default.
+
+What they predict is a minimum of the energy of a grid of half-beams between joints; see
+`prediction`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import InputError
+from simulearn.learn.common.model import Designs, Frames, Last
+from simulearn.learn.equilibrium.bound import ErrorBound
+from simulearn.learn.equilibrium.parameters import (
+    Parameters,
+    named_arrays,
+    parameters_of,
+    shapes_by_name,
+)
+from simulearn.material import Material
+
+BOUND = ("trust.weights", "trust.ranges", "trust.counts")  # names in the files of bundles
+CONVERGED = 0.1  # mm, the last motion of an iteration at most
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A model that solves for equilibrium; without a network it is mechanics alone.
+
+    Attributes:
+        parameters: fitted.
+        material: that they were fitted to.
+        sizes: width, message and rounds of the networks.
+        bound: the error estimate, or None.
+        kind: "equilibrium" or "beams".
+    """
+
+    parameters: Parameters
+    material: Material
+    sizes: tuple[int, int, int] = (64, 16, 2)
+    bound: ErrorBound | None = None
+    kind: str = "equilibrium"
+
+    def rollout(self, designs: Designs) -> Frames:
+        """Return the twelve frames of designs of one topology; see `learn.common.model.Model`."""
+        prediction = self.predict(designs)
+        bound = None if self.bound is None else self.bound.bound(designs, prediction)
+        return Frames(
+            np.asarray(prediction.joints),
+            np.asarray(prediction.sections),
+            None if prediction.stress is None else np.asarray(prediction.stress),
+            bound,
+            converged(prediction),
+        )
+
+    def last(self, designs: Designs) -> Last:
+        """Return the last frame; see `learn.common.model.last_frame`."""
+        prediction = self.predict(designs, last=True)
+        joints, sections = (
+            np.asarray(prediction.joints)[:, 0],
+            np.asarray(prediction.sections)[:, 0],
+        )
+        done = converged(prediction)
+        if not done.all():  # frame by frame more converge
+            rollout = self.predict(designs.take(~done))
+            joints[~done], sections[~done] = rollout.joints[:, -1], rollout.sections[:, -1]
+            done[~done] = converged(rollout)
+        return Last(joints, sections, done)
+
+    def predict(self, designs: Designs, last: bool = False) -> Any:
+        """Return the `prediction.Prediction` of all frames of each design, or of the last."""
+        from simulearn.learn.equilibrium.compiled import predict
+
+        return predict(self.parameters, self.material, designs, last)
+
+    def config(self) -> dict[str, Any]:
+        """Return the architecture."""
+        width, message, rounds = self.sizes
+        return {"width": width, "message": message, "rounds": rounds}
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Return section model, networks and error estimate by name."""
+        arrays = named_arrays(self.parameters)
+        if self.bound is not None:
+            arrays |= {f"trust.{key}": value for key, value in vars(self.bound).items()}
+        return arrays
+
+    @classmethod
+    def from_arrays(
+        cls, config: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], material: Material
+    ) -> "Equilibrium":
+        """Return the model of a bundle.
+
+        Raises:
+            InputError: the architecture is not one, or a weight is missing, too many, or has the
+                wrong shape.
+        """
+        try:
+            sizes = tuple(int(config[key]) for key in ("width", "message", "rounds"))
+        except (KeyError, TypeError, ValueError) as error:
+            raise InputError(f"the architecture has no number {error}") from error
+        if not all(0 < size <= LARGEST for size in sizes):
+            raise InputError(f"the architecture {dict(config)} has a size outside 1 to {LARGEST}")
+        width, message, rounds = sizes
+        network = any(name.startswith("network.") for name in arrays)
+        stress = any(name.startswith("stress.") for name in arrays)
+        expected = shapes_by_name(network, stress, (width, message, rounds))
+        for name, (shape, _) in expected.items():
+            if name not in arrays:
+                raise InputError(f"weight {name} is missing")
+            if arrays[name].shape != shape:
+                raise InputError(f"weight {name} has the shape {arrays[name].shape}, not {shape}")
+        bound = {name: arrays[name] for name in BOUND if name in arrays}
+        if 0 < len(bound) < len(BOUND):
+            raise InputError(f"weight {next(n for n in BOUND if n not in bound)} is missing")
+        if extra := arrays.keys() - expected.keys() - bound.keys():
+            raise InputError(f"weight {min(extra)} does not belong to this architecture")
+        typed = {name: np.asarray(arrays[name], dtype) for name, (_, dtype) in expected.items()}
+        return cls(
+            parameters_of(typed, rounds),
+            material,
+            (width, message, rounds),
+            ErrorBound(*(np.asarray(x, np.float64) for x in bound.values())) if bound else None,
+            "equilibrium" if network else "beams",
+        )
+
+
+LARGEST = 4096  # width, message length or rounds of a network
+
+
+def converged(prediction: Any) -> NDArray[np.bool_]:
+    """Return which designs (T,) of a prediction have an equilibrium in every frame."""
+    motion = np.asarray(prediction.motion)
+    finite = [
+        np.isfinite(x).reshape(len(motion), -1).all(axis=1)
+        for x in (prediction.joints, prediction.sections)
+    ]
+    return np.asarray((motion < CONVERGED) & np.all(finite, axis=0))

@@ -1,0 +1,139 @@
+"""Fitting a model that solves for equilibrium: what its configuration says, stage by stage.
+
+1. The section_model of the section, without a network.
+2. The first shapes of all trials by that model, from which the network takes its features.
+3. The network that corrects it, its polish, and the network for stresses.
+4. The error estimate, on a data set of its own.
+
+FOLDER/law.safetensors, network.safetensors, polish..., stress...   checkpoints
+"""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jax
+import numpy as np
+
+from simulearn.compiled import double_precision
+from simulearn.dataset import Batch, Dataset, read_dataset
+from simulearn.errors import InputError
+from simulearn.learn.common.first_frame import designs_of
+from simulearn.learn.common.metrics import errors
+from simulearn.learn.common.trials import fingerprint, split
+from simulearn.learn.equilibrium import corrector
+from simulearn.learn.equilibrium.bound import ErrorBound, error_bound_of, signs
+from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
+from simulearn.learn.equilibrium.model import Equilibrium
+from simulearn.learn.equilibrium.parameters import CORRECTIONS, STRESSES, NetworkWeights, Parameters
+from simulearn.learn.equilibrium.stages import (
+    Keeper,
+    Report,
+    StageRow,
+    examples_of,
+    fit_network,
+    fit_section_model,
+    fit_stress,
+    no_report,
+)
+
+
+@double_precision
+def train(
+    config: EquilibriumConfig,
+    data: Dataset,
+    folder: Path | None = None,
+    report: Report = no_report,
+) -> tuple[Equilibrium, list[StageRow]]:
+    """Fit a model, or go on with one.
+
+    Args:
+        config: of the run.
+        data: to learn from, with stresses if the configuration has a stage for them.
+        folder: for checkpoints; None keeps none.
+        report: called with (row of the loss curve or None, updates done, updates in all).
+
+    Raises:
+        InputError: a checkpoint is of another run, the trials are too few or of several
+            topologies, or the calibration set is not there.
+        ComputationError: a loss is not finite.
+    """
+    batch = _only(split(config, data)[0], data)
+    calibration = None
+    if config.calibration is not None:  # what is wrong with it is said before all the work
+        calibration = read_dataset(config.calibration, stress=False).batches
+    material = batch.material
+    identity = fingerprint(config, data)
+    stages = (config.law, config.network, config.polish, config.stress)
+    total = sum(stage.updates for stage in stages if stage is not None)
+    every: list[StageRow] = []
+    before = 0
+
+    def keeper(name: str) -> Keeper:
+        def overall(row: StageRow | None, done: int, _: int) -> None:
+            report(row, before + done, total)
+
+        path = None if folder is None else folder / f"{name}.safetensors"
+        return Keeper(name, path, identity, overall)
+
+    def finished(stage: Stage, keep: Keeper) -> int:
+        every.extend(keep.rows)
+        return before + stage.updates
+
+    keep = keeper("law")
+    section_model = fit_section_model(batch, material, config.law, config.seed, keep)
+    before = finished(config.law, keep)
+    networks: dict[str, NetworkWeights] = {}
+    if config.network is not None or config.stress is not None:
+        examples = examples_of(section_model, batch, material)
+        for name, stage, heads, task in (
+            ("network", config.network, CORRECTIONS, fit_network),
+            ("polish", config.polish, CORRECTIONS, partial(fit_network, full=True)),
+            ("stress", config.stress, STRESSES, fit_stress),
+        ):
+            if stage is None:
+                continue
+            begin = networks.get("network") if name == "polish" else None
+            if begin is None:
+                key = jax.random.key(config.seed)
+                begin = corrector.initial_weights(
+                    key, heads, config.width, config.message, config.rounds
+                )
+            keep = keeper(name)
+            fitted = task(section_model, examples, material, begin, stage, config.seed, keep)
+            networks["network" if name == "polish" else name] = fitted
+            before = finished(stage, keep)
+    network, stress = networks.get("network"), networks.get("stress")
+    sizes = (config.width, config.message, config.rounds)
+    as_numpy: Any = jax.tree.map(np.asarray, Parameters(section_model, network, stress))
+    model = Equilibrium(as_numpy, material, sizes, None, config.kind)
+    if calibration is not None:
+        model = Equilibrium(
+            as_numpy, material, sizes, calibrated(model, calibration, [batch]), config.kind
+        )
+    return model, every
+
+
+@double_precision
+def calibrated(
+    model: Equilibrium, calibration: Sequence[Batch], learnt: Sequence[Batch]
+) -> ErrorBound:
+    """Return the error estimate of a model, by trials that it did not learn from."""
+    indicators, wrong = [], []
+    for batch in calibration:
+        frames = model.rollout(designs_of(batch))
+        converged = frames.converged
+        prediction = model.predict(designs_of(batch))
+        indicators.append(signs(designs_of(batch), prediction)[converged])
+        wrong.append(errors(frames, batch).vertex[converged, -1])
+    return error_bound_of(np.concatenate(indicators), np.concatenate(wrong), learnt)
+
+
+def _only(batches: Sequence[Batch], data: Dataset) -> Batch:
+    if len(batches) != 1:
+        raise InputError(
+            f"{data.config.name}: has {len(batches)} topologies; these models learn from one, and "
+            "answer for all"
+        )
+    return batches[0]

@@ -1,0 +1,1 @@
+"""The paper's model: a double interaction network that steps from frame to frame."""
