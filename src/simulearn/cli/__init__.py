@@ -8,6 +8,7 @@ import _thread
 import os
 import sys
 import threading
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
@@ -24,6 +25,7 @@ from simulearn.cli import (  # noqa: F401  (they add their commands)
 )
 from simulearn.cli.base import app, err
 from simulearn.errors import CancelledError, ComputationError, InputError
+from simulearn.files import cache_folder
 
 HINTS = {  # what helps on the command line, by the code of an error
     "no-answer": "--engine fea may have one",
@@ -45,6 +47,7 @@ def root(
 def main() -> None:
     """Run the command line; every failure is one line and an exit code."""
     code, hook = None, sys.unraisablehook
+    _keep_kernels()
     sys.unraisablehook = _interrupt_again
     try:
         code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
@@ -68,6 +71,22 @@ def main() -> None:
     if code == 130:
         _fail("interrupted", 130)
     sys.exit(code)
+
+
+def _keep_kernels() -> None:
+    """Let JAX, if a command needs it, keep its kernels in the user's cache folder.
+
+    JAX reads these variables when it is imported; they hold for this program's process only.
+    """
+    base = cache_folder()
+    if base is None or "JAX_COMPILATION_CACHE_DIR" in os.environ:
+        return
+    folder = base / "compiled"
+    with suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        if os.access(folder, os.W_OK):  # else every run compiles for itself
+            os.environ["JAX_COMPILATION_CACHE_DIR"] = str(folder)
+            os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
 
 
 def _interrupt_again(lost: Any) -> None:
