@@ -1,5 +1,9 @@
 """One interface to every engine, and the outcome that all of them give."""
 
+import sys
+from types import ModuleType
+from typing import Any
+
 from simulearn.simulate.engines import ENGINES, engine
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result, one, results
 from simulearn.simulate.resultfile import (
@@ -40,3 +44,20 @@ __all__ = [
     "write_json",
     "write_npz",
 ]
+
+
+class _Callable(ModuleType):
+    """The module as the function `simulearn.simulate`.
+
+    The folder and the function have one name, and Python puts the module in the function's place
+    as soon as anything of the folder is imported. So the module can be called, too.
+    """
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Return outcomes; see `simulearn.simulate.calls.simulate`."""
+        from simulearn.simulate.calls import simulate
+
+        return simulate(*args, **kwargs)
+
+
+sys.modules[__name__].__class__ = _Callable

@@ -16,9 +16,9 @@ import numpy as np
 
 from simulearn.errors import Cancel, ComputationError, InputError, stop_if
 from simulearn.files import cores
-from simulearn.grid import Grid
+from simulearn.grid import Grid, make
 from simulearn.simulate.checked import Checked, check_all
-from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
+from simulearn.simulate.result import FRAMES, Failure, Outcome, Result, results
 from simulearn.simulate.simulator import Progress, Simulator
 
 Solver = Callable[..., Any]  # (grid, material, *, progress, cancel) -> simulearn.fea.Trial
@@ -34,6 +34,10 @@ class StreamingSimulator(Simulator, Protocol):
         cancel: Cancel | None = None,
     ) -> Iterator[tuple[int, Outcome]]:
         """Yield (place in grids, outcome) as soon as each is known; see `Simulator.simulate`."""
+        ...
+
+    def warm(self) -> None:
+        """Compile what the first simulation would wait for."""
         ...
 
 
@@ -87,6 +91,10 @@ class Engine:
             finally:  # whatever ends this early, as an interrupt, ends the others, too
                 either.set()
                 pool.shutdown(cancel_futures=True)
+
+    def warm(self) -> None:
+        """Compile what the first simulation would wait for."""
+        results(self.simulate([make("flat", (1, 1), 50.0)]))
 
     def _one(self, one: Checked, progress: Progress, cancel: Cancel | None) -> Outcome:
         stop_if(cancel)

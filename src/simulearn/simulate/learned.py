@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from simulearn.errors import Cancel, InputError, Message, stop_if
-from simulearn.grid import Grid, TrainingRange
+from simulearn.grid import Grid, TrainingRange, make
 from simulearn.learn.common.bundle import Bundle, bundle_of
-from simulearn.learn.common.model import Designs, Frames
+from simulearn.learn.common.model import Designs, Frames, last_frame
 from simulearn.material import Material
 from simulearn.simulate.checked import Checked, check_all
 from simulearn.simulate.engines import in_order
@@ -90,6 +90,14 @@ class Learned:
                 done += len(batch)
                 if progress is not None:
                     progress(FRAMES * done, FRAMES * total)
+
+    def warm(self) -> None:
+        """Compile what the first simulation would wait for, of one design and of many."""
+        small = make("flat", (1, 1), 50.0)
+        for count in (1, 4):
+            designs = designs_of([small] * count, self.material)
+            self.bundle.model.rollout(designs)
+            last_frame(self.bundle.model, designs)
 
     def _answers(self, batch: Sequence[tuple[int, Checked]]) -> Iterator[tuple[int, Outcome]]:
         """Yield the outcomes of designs of one topology."""
