@@ -29,8 +29,8 @@ PAIRS = {
 
 def surface(angle: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Return the points (..., 3) mm of the shade at angles (rad) and heights (mm)."""
-    whole = len(MODULES) * HEIGHT
-    radius = 84.0 - 12.0 * np.sin(np.pi * (z / whole - 0.5))
+    total = len(MODULES) * HEIGHT
+    radius = 84.0 - 12.0 * np.sin(np.pi * (z / total - 0.5))
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=-1)
 
 

@@ -51,7 +51,10 @@ def result(grid=None, bend=saddle, solid=True):
     grid = square_grid() if grid is None else grid
     joints, beams = _joints(grid), _beams(grid)
     shares = [*np.linspace(0, 1, FRAMES - 1), 1.05]
-    move = lambda p: np.array([bend(p.reshape(-1, 3), s).reshape(p.shape) for s in shares])  # noqa: E731
+
+    def move(p):
+        return np.array([bend(p.reshape(-1, 3), s).reshape(p.shape) for s in shares])
+
     mesh = _solid(grid, joints, beams) if solid else None
     rng = np.random.default_rng(0)
     return Result(
@@ -100,7 +103,10 @@ def _solid(grid, joints, beams):
     every = np.concatenate(bricks)
     _, first, index = np.unique(np.round(every, 6), axis=0, return_index=True, return_inverse=True)
     nodes = every[first]
-    number = lambda p: np.linalg.norm(nodes - p[..., None, :], axis=-1).argmin(axis=-1)  # noqa: E731
+
+    def number(p):
+        return np.linalg.norm(nodes - p[..., None, :], axis=-1).argmin(axis=-1)
+
     known = {
         "nodes": nodes,
         "bricks": index.reshape(-1, 20),

@@ -18,7 +18,7 @@ from simulearn.errors import InputError
 if TYPE_CHECKING:
     from simulearn.dataset import Dataset, Tally
 
-dataset = typer.Typer(help="Generate, pack and look at data sets.", no_args_is_help=True)
+dataset = typer.Typer(help="Generate, pack and inspect data sets.", no_args_is_help=True)
 app.add_typer(dataset, name="dataset")
 
 Packed = Annotated[Path, typer.Argument(metavar="FILE", help="A packed data set (.h5).")]
@@ -52,19 +52,19 @@ def generate(
 
     if scheduler and workers:
         raise InputError("--workers is for this machine; the cluster of --scheduler has its own")
-    asked = sets.read_config(config)
+    wanted = sets.read_config(config)
     if trials is not None:
-        asked = asked.model_copy(update={"trials": trials})
+        wanted = wanted.model_copy(update={"trials": trials})
     if retry:
-        Folder(output, asked).forget_failures()
+        Folder(output, wanted).forget_failures()
     team = (
         sets.cluster_workers(scheduler)
         if scheduler
         else sets.local_workers(workers or os.cpu_count() or 1)
     )
     try:
-        with _rate(quiet=as_json) as tell:
-            tally = sets.generate(asked, output, team, tell)
+        with _rate(quiet=as_json) as progress:
+            tally = sets.generate(wanted, output, team, progress)
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise
@@ -116,9 +116,9 @@ def info(
     if output is not None and output.suffix not in (".png", ".pdf", ".svg"):
         raise InputError(f"{output}: a picture ends in .png, .pdf or .svg")
     data = sets.read_dataset(file, stress=False)
-    told, found = sets.checksum(file)
-    if told != found:
-        raise InputError(f"{file}: is damaged (its SHA-256 is {found[:12]}…, not {told[:12]}…)")
+    stored, actual = sets.checksum(file)
+    if stored != actual:
+        raise InputError(f"{file}: is damaged (its SHA-256 is {actual[:12]}…, not {stored[:12]}…)")
     figures = summary(data)
     if output is not None:
         from simulearn.show.dataset import dataset_picture
@@ -181,7 +181,7 @@ def _plain(tally: "Tally") -> dict[str, Any]:
 
 @contextmanager
 def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
-    """Yield what a run tells its tally to: a bar, or lines where it is no terminal."""
+    """Yield a function that shows a tally: as a bar, or as lines where there is no terminal."""
     if quiet:
         yield lambda tally: None
         return
@@ -192,7 +192,7 @@ def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
     with bar(remaining=True, period=900) as shown:
         task: list[Any] = []
 
-        def tell(tally: "Tally") -> None:
+        def show(tally: "Tally") -> None:
             done = tally.trials - tally.left
             words = f"{tally.per_minute:.0f}/min" + (
                 f", {tally.failed} failed" if tally.failed else ""
@@ -201,11 +201,11 @@ def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
                 task.append(shown.add_task("trials", total=tally.trials, completed=done, words=""))
             shown.update(task[0], completed=done, words=words)
 
-        yield tell
+        yield show
 
 
 def _lines(tally: "Tally") -> None:
-    """Tell every hundredth trial, for logs."""
+    """Print every hundredth trial, for logs."""
     new = tally.done + len(tally.reasons)
     if new % 100 == 0 or tally.left == 0:
         err.print(

@@ -45,9 +45,9 @@ def train(
     from simulearn.learn.config import read_config
     from simulearn.learn.equilibrium.config import EquilibriumConfig
 
-    asked = read_config(config)
-    folder = output or Path("runs") / (asked.name + ("-search" if search else ""))
-    source = data or Path(asked.data)
+    wanted = read_config(config)
+    folder = output or Path("runs") / (wanted.name + ("-search" if search else ""))
+    source = data or Path(wanted.data)
     if not source.is_file():
         raise InputError(
             f"{source}: there is no such data set; make one with `simulearn dataset generate` "
@@ -56,13 +56,13 @@ def train(
     folder_of(folder)
     trials = read_dataset(source, "train")
     if search:
-        if isinstance(asked, EquilibriumConfig):
+        if isinstance(wanted, EquilibriumConfig):
             raise InputError("--search is for the kind paper; this configuration has no noise")
         from simulearn.learn.paper.search import search as search_for
         from simulearn.show.learning import search_picture
 
         with counting("runs", quiet=as_json) as progress:
-            figures = search_for(asked, trials, folder, search, progress)
+            figures = search_for(wanted, trials, folder, search, progress)
         with replacing(folder / "search.png") as temporary:
             search_picture(figures).savefig(temporary)
         if as_json:
@@ -75,16 +75,16 @@ def train(
     from simulearn.show.learning import loss_picture, stages_picture
 
     picture: Callable[[Any, str], Any] = (
-        stages_picture if isinstance(asked, EquilibriumConfig) else loss_picture
+        stages_picture if isinstance(wanted, EquilibriumConfig) else loss_picture
     )
 
     def draw(rows: Any, path: Path) -> None:
         with replacing(path) as temporary:
-            picture(rows, asked.name).savefig(temporary)
+            picture(rows, wanted.name).savefig(temporary)
 
     try:
-        with _epochs(quiet=as_json) as told:
-            bundle, rows, percent = run(asked, trials, folder, told, draw)
+        with _epochs(quiet=as_json) as show:
+            bundle, rows, percent = run(wanted, trials, folder, show, draw)
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise
@@ -123,18 +123,18 @@ def evaluate(
     data = read_dataset(dataset, stress=False)
     batches = for_testing(data)
     with counting("trials", quiet=as_json) as progress:
-        found = evaluate_(trained, batches, progress)
+        evaluation = evaluate_(trained, batches, progress)
     figures = {
         "model": bundle.card.name,
         "kind": bundle.card.kind,
         "dataset": data.config.name,
         "sha256": data.sha256,
-        **found.errors.summary(),
+        **evaluation.errors.summary(),
     }
     if record:
         add_metrics(bundle, data.config.name, figures)
     if output is not None:
-        _write(found, figures, output)
+        _write(evaluation, figures, output)
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
@@ -143,12 +143,12 @@ def evaluate(
         out.print(f"wrote {escape(str(output))}/figures.json, trials.csv, errors.png, grids.png")
 
 
-def _write(found: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
+def _write(evaluation: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
     from simulearn.show.learning import error_picture, grids_picture
 
     with replacing(folder / "figures.json") as temporary:
         temporary.write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
-    e = found.errors
+    e = evaluation.errors
     lines = ["trial,dimension_mm,error_mm,error_percent,rotation_deg,gap_mm,motion_mm"]
     rows = zip(
         e.numbers, e.dimension, e.vertex[:, -1], e.percent[:, -1], e.rotation[:, -1], e.gap[:, -1],
@@ -159,7 +159,7 @@ def _write(found: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
         temporary.write_text("\n".join(lines) + "\n", "utf-8")
     for name, picture in (("errors", error_picture), ("grids", grids_picture)):
         with replacing(folder / f"{name}.png") as temporary:
-            picture(found, figures["model"]).savefig(temporary)
+            picture(evaluation, figures["model"]).savefig(temporary)
 
 
 def _table(figures: dict[str, Any]) -> Table:
@@ -193,7 +193,7 @@ def _best(figures: dict[str, Any]) -> str:
 
 @contextmanager
 def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
-    """Yield what a run tells: a bar on a terminal, a line for each epoch elsewhere."""
+    """Yield a function that shows a run: a bar on a terminal, a line for each epoch elsewhere."""
     if quiet:
         yield lambda row, done, total: None
         return
@@ -208,12 +208,12 @@ def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
     with bar(remaining=True, period=600) as shown:
         task = shown.add_task("updates", total=None, words="")
 
-        def tell(row: Any, done: int, total: int) -> None:
+        def show(row: Any, done: int, total: int) -> None:
             shown.update(task, completed=done, total=total)
             if row is not None:
                 shown.update(task, words=_words(row))
 
-        yield tell
+        yield show
 
 
 def _words(row: Any) -> str:

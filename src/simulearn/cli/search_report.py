@@ -22,51 +22,51 @@ if TYPE_CHECKING:
 BARS = "▁▂▃▄▅▆▇█"
 
 
-def search_figures(task: "Task", found: "SearchResult") -> dict[str, Any]:
+def search_figures(task: "Task", result: "SearchResult") -> dict[str, Any]:
     """Return what summary.json holds."""
-    check = found.check
+    check = result.check
     return {
         "method": task.method,
         "engine": task.engine,
-        "error_mm": found.error_mm,
+        "error_mm": result.error_mm,
         "error_fea_mm": check.error_fea_mm if check else None,
         "why_no_fea": check.why if check and check.error_fea_mm is None else None,
         "apart_mm": check.apart_mm if check else None,
         "bound_mm": check.bound_mm if check else None,
         "agrees": check.agrees if check else None,
-        "start_mm": found.steps[0].error_mm,
-        "designs": found.designs,
-        "iterations": found.iterations,
-        "corrections": found.steps[-1].phase,
-        "seconds": round(found.seconds, 3),
-        "interrupted": found.interrupted,
-        "warnings": [asdict(message) for message in found.warnings],
+        "start_mm": result.steps[0].error_mm,
+        "designs": result.designs,
+        "iterations": result.iterations,
+        "corrections": result.steps[-1].phase,
+        "seconds": round(result.seconds, 3),
+        "interrupted": result.interrupted,
+        "warnings": [asdict(message) for message in result.warnings],
         "goals": [
             {"vertex": vertex, "distance_mm": distance}
-            for vertex, distance in _distances(task, found)
+            for vertex, distance in _distances(task, result)
         ],
-        "history": [step.row() for step in found.steps],
+        "history": [step.row() for step in result.steps],
     }
 
 
-def _distances(task: "Task", found: "SearchResult") -> list[tuple[str, float]]:
+def _distances(task: "Task", result: "SearchResult") -> list[tuple[str, float]]:
     """Return how far each vertex is from its target, by finite elements where they answered."""
-    result = None if found.check is None else found.check.shape
-    if result is None:
+    shape = None if result.check is None else result.check.shape
+    if shape is None:
         return []
     aims = task.aims
-    away = aims.distances(aims.points(result.joints[-1], result.beams[-1]))
+    away = aims.distances(aims.points(shape.joints[-1], shape.beams[-1]))
     return [(str(v), float(d)) for v, d in zip(aims.vertices, away, strict=True)]
 
 
-def search_words(figures: dict[str, Any], found: "SearchResult") -> Iterator[str]:
+def search_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
     """Yield what a person wants to know."""
     yield (
-        f"{figures['start_mm']:.2f} mm to begin with, [bold]{found.error_mm:.2f} mm[/] by the "
-        f"engine {figures['engine']} after {found.iterations} iterations and {found.designs} "
-        f"designs, {found.seconds:.1f} s"
+        f"{figures['start_mm']:.2f} mm to begin with, [bold]{result.error_mm:.2f} mm[/] by the "
+        f"engine {figures['engine']} after {result.iterations} iterations and {result.designs} "
+        f"designs, {result.seconds:.1f} s"
     )
-    check = found.check
+    check = result.check
     if check is None:
         return
     if check.error_fea_mm is None:
@@ -86,7 +86,7 @@ def search_words(figures: dict[str, Any], found: "SearchResult") -> Iterator[str
 
 
 def search_pictures(
-    task: "Task", found: "SearchResult", folder: Path, model: str | None
+    task: "Task", result: "SearchResult", folder: Path, model: str | None
 ) -> list[str]:
     """Draw the error curve, the shape beside its targets, and the design changing.
 
@@ -97,14 +97,14 @@ def search_pictures(
     from simulearn.simulate import Result
     from simulearn.simulate import engine as engine_of
 
-    check = found.check
+    check = result.check
     names = ["error.png"]
     with replacing(folder / "error.png") as temporary:
-        error_curve(found.steps, check.error_fea_mm if check else None).savefig(temporary)
+        error_curve(result.steps, check.error_fea_mm if check else None).savefig(temporary)
     # Every design by a slow engine would take as long as the search did.
     quick = task.engine in ("learned", "beams")
     simulator = engine_of(task.engine, model) if quick else engine_of("beams")
-    steps = _changes(found)
+    steps = _changes(result)
     outcomes = simulator.simulate([step.grid(task.start) for step in steps])
     shape = None if check is None else check.shape
     if shape is None and isinstance(outcomes[-1], Result):
@@ -122,17 +122,17 @@ def search_pictures(
     return names
 
 
-def _changes(found: "SearchResult", most: int = 40) -> "list[Step]":
+def _changes(result: "SearchResult", most: int = 40) -> "list[Step]":
     """Return the steps at which the best design changed, at most so many, the last one always."""
     kept: list[Step] = []
-    for step in found.steps:
+    for step in result.steps:
         if not kept or (step.joints, step.actuators) != (kept[-1].joints, kept[-1].actuators):
             kept.append(step)
     final = replace(
         kept[-1],
-        joints=found.grid.joints.tolist(),
-        actuators=found.grid.actuators.tolist(),
-        error_mm=found.error_mm,
+        joints=result.grid.joints.tolist(),
+        actuators=result.grid.actuators.tolist(),
+        error_mm=result.error_mm,
     )
     stride = max(1, -(-len(kept) // most))
     return [*kept[:-1][::stride], final]

@@ -1,7 +1,7 @@
 """Ranking, for a designer who chooses: every single modification scored in one call.
 
 The five best that are shown differ really: no two change the same joint or beam, and no two move
-the goals' vertices in nearly the same way.
+the goals' vertices nearly alike.
 """
 
 from collections.abc import Sequence

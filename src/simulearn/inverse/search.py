@@ -18,7 +18,7 @@ from simulearn.grid import Grid
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import Past, Step
-from simulearn.inverse.problem import Did, Found, OutOfTime, Problem, drawing
+from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, drawing
 from simulearn.inverse.reach import out_of_reach
 from simulearn.inverse.scoring import places
 from simulearn.inverse.space import Space
@@ -33,7 +33,7 @@ METHODS = {  # name -> module, function
     "gradient": ("simulearn.inverse.gradient", "gradient"),
     "cma": ("simulearn.inverse.cma_es", "cma_es"),
 }
-Method = Callable[[Problem, Found], Iterator[Did]]
+Method = Callable[[Problem, Scored], Iterator[Advance]]
 Progress = Callable[[Step], None]  # called with each step, as soon as it is done
 
 GOOD = 0.1  # mm, about the engine's own error; a search that came so far has done its work
@@ -125,7 +125,7 @@ def optimize(
 
 
 class Search:
-    """A search under way.
+    """A search that is running.
 
     Args:
         task: what is wanted.
@@ -190,12 +190,12 @@ class Search:
         """Of searching and checking, earlier runs included."""
         return float(monotonic() - self._begun)
 
-    def _started(self, space: Space, goals: Goals) -> Found:
+    def _started(self, space: Space, goals: Goals) -> Scored:
         """Return the design to begin with, and start the clock."""
         problem = self._problem(space, goals, np.inf)
         before = self.steps[-1] if self.steps else None
         x, a = space.start if before is None else space.point(before.grid(space.grid))
-        start = problem.found(x, a)
+        start = problem.scored(x, a)
         if not np.isfinite(start.error):
             raise ComputationError(
                 f"the engine {self.engine.name} has no answer for the design to begin with",
@@ -229,7 +229,7 @@ class Search:
             cancel=self.cancel,
         )
 
-    def _searched(self, space: Space, goals: Goals, start: Found, phase: int) -> Found:
+    def _searched(self, space: Space, goals: Goals, start: Scored, phase: int) -> Scored:
         """Return the best design of a phase, by the engine."""
         limits = self.task.limits
         left = limits.seconds - self.seconds
@@ -241,13 +241,13 @@ class Search:
         before = self.steps[-1].designs
         # Targets may have moved since it was scored.
         error = float(problem.error(start.points[None])[0])
-        start = problem.best = Found(start.x, start.a, start.points, error)
+        start = problem.best = Scored(start.x, start.a, start.points, error)
         try:
             if start.error > GOOD and done < limits.iterations:
-                for did in self.method(problem, start):
+                for advance in self.method(problem, start):
                     now = problem.best
-                    count = self.steps[-1].iteration + did.whole
-                    self._note(space, now, count, before + problem.designs, phase, did.words)
+                    count = self.steps[-1].iteration + advance.complete
+                    self._note(space, now, count, before + problem.designs, phase, advance.words)
                     if count >= most or now.error < GOOD:
                         break
                     problem.going()
@@ -258,7 +258,7 @@ class Search:
                 raise
         return problem.best
 
-    def _checked(self, grid: Grid, now: Found, goals: Goals, phase: int) -> Check:
+    def _checked(self, grid: Grid, now: Scored, goals: Goals, phase: int) -> Check:
         """Return the check of a design, perhaps one of an earlier run."""
         for one in self.checks:
             if one.error_fea_mm is not None and _same(one.grid, grid):
@@ -272,7 +272,7 @@ class Search:
         return latest
 
     def _note(
-        self, space: Space, now: Found, iteration: int, designs: int, phase: int, words: str
+        self, space: Space, now: Scored, iteration: int, designs: int, phase: int, words: str
     ) -> None:
         grid = space.grid_at(now.x, now.a)
         step = Step(

@@ -143,7 +143,7 @@ class Space:
         return net if np.isfinite(net).all() else None
 
     def options(self, x: Array) -> list[Array]:
-        """Return the ratios that each actuator may have at joints x (P,): whole, long enough."""
+        """Return for each actuator the steps that are long enough at joints x (P,)."""
         count = int(1 / self.ratio + CLOSE)
         steps: Array = self.ratio * np.arange(-count, count + 1, dtype=float)
         net = self.net(x)

@@ -144,9 +144,9 @@ KEYS = {
     "method": "a method is a name",
     "engine": "an engine is a name",
     "limits": "limits are an object with iterations, seconds and corrections",
-    "iterations": "iterations are a whole number of at least 1",
+    "iterations": "iterations are an integer of at least 1",
     "seconds": "seconds are a number more than 0",
-    "corrections": "corrections are a whole number of at least 0",
+    "corrections": "corrections are an integer of at least 0",
 }
 PLACES: dict[str, type[BaseModel]] = {
     "goals": Goal,
@@ -175,7 +175,7 @@ def read_task(path: Path | str) -> Task:
 
 
 def write_task(task: Task, path: Path | str) -> None:
-    """Write a task to a file, whole or not at all.
+    """Write a task to a file, or leave the old one.
 
     Raises:
         InputError: the file cannot be written.

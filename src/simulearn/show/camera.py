@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the viewer is, seen from the grid, in degrees.
+    """Where the viewer is, from the grid, in degrees.
 
     Attributes:
         azimuth: from +x, about z.

@@ -43,7 +43,7 @@ def error_curve(steps: Sequence[Step], error_fea_mm: float | None = None) -> Fig
     """
     figure = Figure(figsize=(7.2, 2.7), dpi=style.DPI, layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
-    # A search that found its target exactly still has a place on the scale.
+    # A search that reached its target exactly still has a place on the scale.
     errors = [max(step.error_mm, 1e-3) for step in steps]
     for ax, name, label in (
         (axes[0], "iteration", "iteration"),
@@ -224,8 +224,8 @@ def _around(
     """Return the lower left and upper right corner (2,) of extents and targets together."""
     if goals is None:
         return _union(extents)
-    seen = camera.see(goals.targets)[:, :2]
-    return _union([*extents, (seen.min(axis=0), seen.max(axis=0))])
+    placed = camera.see(goals.targets)[:, :2]
+    return _union([*extents, (placed.min(axis=0), placed.max(axis=0))])
 
 
 def _union(extents: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:

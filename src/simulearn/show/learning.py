@@ -83,11 +83,11 @@ def stages_picture(rows: Sequence[StageRow], name: str) -> Figure:
     return style.ink(figure)
 
 
-def error_picture(found: Evaluation, name: str) -> Figure:
+def error_picture(evaluation: Evaluation, name: str) -> Figure:
     """Return a histogram of the trials' errors, in % of dimension and in mm (Figure 10)."""
     figure = Figure(figsize=(7.2, 2.7), dpi=style.DPI, layout="constrained")
     axes = figure.subplots(1, 3)
-    e = found.errors
+    e = evaluation.errors
     last = e.percent[:, -1]
     for ax, values, unit in (
         (axes[0], last, "% of dimension"),
@@ -121,15 +121,15 @@ def error_picture(found: Evaluation, name: str) -> Figure:
     return style.ink(figure)
 
 
-def grids_picture(found: Evaluation, name: str) -> Figure:
+def grids_picture(evaluation: Evaluation, name: str) -> Figure:
     """Return the best, the median and the worst answer over the truth (Figures 11 and 20)."""
     chosen = (("best", 0.0), ("median", 0.5), ("worst", 1.0))
     figure = Figure(figsize=(7.4, 2.9), dpi=style.DPI, layout="constrained")
     for ax, (words, quantile) in zip(figure.subplots(1, 3), chosen, strict=True):
-        k = found.example(quantile)
-        batch, frames, t = found.trial(k)
+        k = evaluation.example(quantile)
+        batch, frames, t = evaluation.trial(k)
         draw_both(ax, *both(batch, frames, t))
-        e = found.errors
+        e = evaluation.errors
         ax.set_title(
             f"{words}: trial {e.numbers[k]}, {e.percent[k, -1]:.2f} % of {e.dimension[k]:.0f} mm",
             fontsize=8,
@@ -163,9 +163,9 @@ def draw_both(
         normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
         front = normals @ camera.axes[2] > 0
-        seen = camera.see(corners[front])
-        faces.append(seen[..., :2])
-        depths.append(seen[..., 2].mean(axis=1))
+        projected = camera.see(corners[front])
+        faces.append(projected[..., :2])
+        depths.append(projected[..., 2].mean(axis=1))
         colours.append(camera.light(normals[front])[:, None] * np.array(to_rgb(colour)))
     order = np.argsort(np.concatenate(depths))
     shapes, rgb = np.concatenate(faces)[order], np.concatenate(colours)[order]
@@ -182,7 +182,7 @@ def draw_both(
 
 
 def search_picture(figures: dict[str, Any]) -> Figure:
-    """Return what a search found: four panels as in the paper's Figure 9."""
+    """Return the results of a search: four panels as in the paper's Figure 9."""
     runs = figures["runs"]
     figure = Figure(figsize=(7.4, 5.0), dpi=style.DPI, layout="constrained")
     axes = figure.subplots(2, 2)
@@ -228,13 +228,15 @@ def _marginal(ax: Axes, runs: Sequence[dict[str, Any]], key: str, words: str) ->
         (ax, "validation_percent", ANSWER, "o", "vertex error, % of dimension", -0.08),
         (other, "gap_mm", TRUTH, "s", "dislocation, mm", 0.08),
     ):
-        told = np.array([run[column] for run in runs])
-        best = [told[x == k].min() for k in range(len(levels))]
-        axes.plot(x + aside, told, mark, ms=3.5, color=colour, mfc="none" if mark == "s" else None)
+        values = np.array([run[column] for run in runs])
+        best = [values[x == k].min() for k in range(len(levels))]
+        axes.plot(
+            x + aside, values, mark, ms=3.5, color=colour, mfc="none" if mark == "s" else None
+        )
         axes.plot(np.arange(len(levels)) + aside, best, "-", lw=1, color=colour)
         axes.set_ylabel(label, color=colour, fontsize=8)
         axes.tick_params(labelsize=7)
-        axes.set_ylim(0, 1.06 * told.max())
+        axes.set_ylim(0, 1.06 * values.max())
     other.spines["top"].set_visible(False)
     ax.set_xticks(range(len(levels)), levels)
     ax.set_xlim(-0.4, len(levels) - 0.6)

@@ -1,4 +1,4 @@
-"""How pictures look: colours, line weights, legend, scale bar.
+"""The style of pictures: colours, line weights, legend, scale bar.
 
 Top and bottom actuators have the vermillion and blue of Okabe and Ito's palette, which people with
 any common colour blindness tell apart; a longer actuator has a deeper tint of them.

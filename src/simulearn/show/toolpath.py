@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 COLOURS = {SKIRT: "#b7b7b7", SHELL: "#4a4a4a", PASSIVE: "#cfcfcf", JOINT: "#8f8f8f"}
 TRAVEL = "#009e73"  # of the same palette as the halves
 COLUMNS = 4
-PART, WHOLE = 0.82, 1.5  # of a bead's width: told apart, or closed to an area
+PART, CLOSED = 0.82, 1.5  # of a bead's width: distinct, or closed to an area
 
 
 def layers(path: Toolpath, title: str = "", width: float = 7.2) -> Figure:
@@ -56,7 +56,7 @@ def layers(path: Toolpath, title: str = "", width: float = 7.2) -> Figure:
             (tall - words) / height,
         )
         ax = _axes(fig, place, low, high)
-        _beads(ax, layer, _top(path, k), WHOLE * 72 / inch, skirt=False)
+        _beads(ax, layer, _top(path, k), CLOSED * 72 / inch, skirt=False)
         fig.text(
             place[0] + 0.5 / columns,
             (bottom + tall - 0.6 * words) / height,
@@ -125,16 +125,18 @@ def _beads(ax: Axes, shown: Layer, top: bool, points: float, skirt: bool) -> Non
         pieces = np.concatenate([np.stack([b.points[:-1], b.points[1:]], axis=1) for b in beads])
         widths = np.concatenate([b.widths for b in beads]) * points
         draw: Any = ax.add_collection
-        look: dict[str, Any] = {"colors": colour, "linewidths": widths, "capstyle": "round"}
-        draw(LineCollection(list(pieces), **look), autolim=False)
+        kind: dict[str, Any] = {"colors": colour, "linewidths": widths, "capstyle": "round"}
+        draw(LineCollection(list(pieces), **kind), autolim=False)
 
 
 def _travels(ax: Axes, shown: Layer) -> None:
-    """Draw the ways between beads."""
-    ways = [(a.points[-1], b.points[0]) for a, b in zip(shown.beads, shown.beads[1:], strict=False)]
-    look: dict[str, Any] = {"colors": TRAVEL, "linewidths": 0.6, "linestyles": (0, (3, 1.5))}
+    """Draw the travels between beads."""
+    travels = [
+        (a.points[-1], b.points[0]) for a, b in zip(shown.beads, shown.beads[1:], strict=False)
+    ]
+    kind: dict[str, Any] = {"colors": TRAVEL, "linewidths": 0.6, "linestyles": (0, (3, 1.5))}
     draw: Any = ax.add_collection
-    draw(LineCollection(ways, zorder=4, **look), autolim=False)
+    draw(LineCollection(travels, zorder=4, **kind), autolim=False)
     x, y = shown.beads[0].points[0]
     ax.plot([x], [y], "o", ms=3, color=TRAVEL, zorder=4)
 
