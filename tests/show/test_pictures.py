@@ -181,7 +181,7 @@ def test_what_qualifies_an_answer_stands_under_its_picture():
     )  # fmt: skip
     for draw in (deformed, combined):
         (line,) = [t.get_text() for t in draw(doubtful).texts if "unstable" in t.get_text()]
-        for words in ("unstable balance", "snaps at 94%", "less than 0.31 mm", "beam 3 is long"):
+        for words in ("unstable balance", "snaps at 94%", "below 0.31 mm", "beam 3 is long"):
             assert words in line
         assert not [t for t in draw(RESULT).texts if "unstable" in t.get_text()]
         assert (pixels(draw(doubtful))[-6:] == 1).all()

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from simulearn.show import style
 from simulearn.show.camera import Camera
-from simulearn.simulate import Result, Skin, remarks, skin, summary
+from simulearn.simulate import Result, Skin, skin, summary
 
 Array = NDArray[np.float64]
 SPACING = 2.0  # mm, length of the quadrilaterals along a beam
@@ -128,11 +128,17 @@ def dimensions(result: Result) -> str:
 
 
 def qualified(result: Result) -> list[str]:
-    """Return what qualifies an answer, for the line beneath its picture."""
-    count = len(result.warnings)
-    return [*remarks(result), *([f"{count} warnings"] if count > 1 else [])] + [
-        message.message for message in result.warnings if count == 1
-    ]
+    """Return in few words what qualifies an answer, for the line beneath its picture."""
+    words = [] if result.stable else ["unstable balance"]
+    if result.snaps:
+        words.append("snaps at " + ", ".join(f"{snap.released:.0%}" for snap in result.snaps))
+    if result.bound_mm is not None:
+        words.append(f"error below {result.bound_mm:.2f} mm (9 of 10)")
+    if len(result.warnings) == 1:
+        words.append(result.warnings[0].message)
+    elif result.warnings:
+        words.append(f"{len(result.warnings)} warnings")
+    return words
 
 
 def deformed(

@@ -5,6 +5,7 @@ any common colour blindness tell apart; a longer actuator has a deeper tint of t
 """
 
 from collections.abc import Sequence
+from textwrap import shorten
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -25,6 +26,7 @@ INK, LINE = "#262626", "#4d4d4d"
 PALEST = 0.42  # of the full hue, the tint of a very short actuator
 PLAIN = ("black", "k", "#000000")  # the colours of a text that nobody coloured
 DPI = 200
+LETTERS = 20  # of a remark in an inch
 
 
 def ink(fig: Figure) -> Figure:
@@ -116,8 +118,9 @@ def remark(fig: Figure, lines: Sequence[str]) -> None:
     """Write what qualifies an answer in a line above the legend, if there is anything."""
     if lines:
         width, height = fig.get_size_inches()
+        text = shorten("; ".join(lines), int(LETTERS * width), placeholder=" ...")
         place = (1 - 0.25 / width, 0.27 / height)
-        fig.text(*place, "; ".join(lines), ha="right", va="center_baseline", fontsize=6, color=TOP)
+        fig.text(*place, text, ha="right", va="center_baseline", fontsize=6, color=TOP)
 
 
 def legend(fig: Figure, inches: float = 0.1) -> None:
