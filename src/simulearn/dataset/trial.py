@@ -22,7 +22,7 @@ from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.material import Material
 
 # Raise it when the solver answers differently, so that older trials are not taken for new ones.
-SOLVER_VERSION = 1
+SOLVER_VERSION = 2
 
 Array = NDArray[np.float32]
 
