@@ -68,7 +68,7 @@ def state():
             threading.active_count(), signal.getsignal(signal.SIGINT))
 before = state()
 from simulearn import Grid, Result, optimize, rank, simulate, validate, warm
-import simulearn.simulate.learned, simulearn.show, simulearn.interop
+import simulearn.simulate.learned, simulearn.fea, simulearn.show, simulearn.interop
 assert state() == before
 """
     python(code)

@@ -534,7 +534,9 @@ def test_quick_commands_load_no_solver(words):
     assert done.returncode == 0
     loaded = {line.rsplit("|", 1)[-1].strip() for line in done.stderr.splitlines()}
     assert "simulearn.cli" in loaded | {"simulearn.cli"}
-    assert loaded.isdisjoint({"jax", "skfem", "scipy.sparse", "matplotlib", "trimesh", "meshio"})
+    assert loaded.isdisjoint(
+        {"jax", "numba", "skfem", "scipy.sparse", "matplotlib", "trimesh", "meshio"}
+    )
 
 
 def test_a_saddle_by_finite_elements(tmp_path):

@@ -15,6 +15,7 @@ import synthetic
 from simulearn.errors import CancelledError, ComputationError, InputError, Message, stop_if
 from simulearn.grid import Grid, grid_to_dict, make
 from simulearn.material import load_material
+from simulearn.material.material import HERE
 from simulearn.schedule import Snap
 from simulearn.simulate import (
     ENGINES,
@@ -223,3 +224,53 @@ def test_a_summary_has_the_numbers_one_asks_for_first():
     without = dataclasses.replace(result, record={})
     assert "iterations" not in summary(without)
     assert grid_to_dict(without.grid) == grid_to_dict(result.grid)
+
+
+@pytest.fixture(scope="module")
+def cell():
+    """A single cell by finite elements."""
+    return make("twist", (1, 1), 45.0)
+
+
+def test_an_edited_material_changes_the_next_answer(cell, tmp_path):
+    text = (HERE / "pla-hot-water.toml").read_text("utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(text, "utf-8")
+    grid = dataclasses.replace(cell, material=str(path))
+    simulator = engine("fea")
+    (named, heavy) = results(simulator.simulate([cell, grid]))
+    np.testing.assert_array_equal(heavy.joints, named.joints)
+    assert heavy.material == named.material
+    path.write_text(text.replace("acceleration = 2182", "acceleration = 0"), "utf-8")
+    light = one(simulator.simulate([grid])[0])
+    assert abs(light.centres[-1] - heavy.centres[-1]).max() > 0.1
+    assert light.material.digest != heavy.material.digest
+    # Without gravity the flat frame loaded by nothing stays where it is, and creep does nothing.
+    np.testing.assert_allclose(light.joints[-1], light.joints[-2], atol=1e-3)
+    # The learned engine refuses it, and names both.
+    (refused,) = engine("learned").simulate([grid])
+    assert refused.code == "material-not-learnt"
+    assert light.material.digest[:12] in refused.message
+    assert named.material.digest[:12] in refused.message
+
+
+def test_threads_and_one_after_the_other_give_the_same_bits(cell):
+    grids = [cell, dataclasses.replace(cell, actuators=-cell.actuators), cell]
+    simulator = engine("fea")
+    alone = results(dataclasses.replace(simulator, workers=1).simulate(grids))
+    together = results(dataclasses.replace(simulator, workers=3).simulate(grids))
+    for a, b in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(a.joints, b.joints)
+        assert a.record == b.record
+
+
+def test_a_token_stops_finite_elements(cell):
+    token, frames = threading.Event(), []
+
+    def progress(done, total):
+        frames.append(done)
+        token.set()
+
+    with pytest.raises(CancelledError):
+        engine("fea").simulate([cell], progress, token)
+    assert len(frames) == 1

@@ -110,9 +110,9 @@ class Engine:
             stress=np.asarray(trial.stress),
             seconds=float(trial.seconds),
             material=one.material.identity,
-            stable=bool(getattr(trial, "stable", trial.record.get("stable", True))),
-            snaps=tuple(getattr(trial, "snaps", ())),
-            warnings=(*one.warnings, *getattr(trial, "warnings", ())),
+            stable=trial.stable,
+            snaps=trial.snaps,
+            warnings=(*one.warnings, *trial.warnings),
             record=dict(trial.record),
             solid=trial.solid,
             displacements=np.asarray(trial.displacements),
@@ -168,7 +168,7 @@ class _Either:
 
 
 def _cancelled_by_frame(simulate_grid: Solver) -> Solver:
-    """Return a solver that looks at the token after each frame, of one that knows no token."""
+    """Return a solver that obeys a token after each frame, of one that takes none."""
 
     def solver(grid: Grid, material: Any, *, progress: Progress, cancel: Cancel | None) -> Any:
         def after_frame(done: int, total: int) -> None:
@@ -183,7 +183,7 @@ def _cancelled_by_frame(simulate_grid: Solver) -> Solver:
 def _fea() -> StreamingSimulator:
     from simulearn.fea import simulate_grid
 
-    return Engine("fea", _cancelled_by_frame(simulate_grid))
+    return Engine("fea", simulate_grid)
 
 
 def _calculix() -> StreamingSimulator:
