@@ -149,7 +149,7 @@ def test_what_qualifies_an_answer_is_shown(run, monkeypatch):
     code, out, err = run("simulate", "saddle")
     assert code == 0
     assert "unstable balance" in err
-    assert "snaps at 94% released" in err
+    assert "snaps at 94.4% released" in err
     assert "material pla-hot-water (" in out
     assert run("simulate", "saddle", "--json")[2] == ""
 

@@ -149,7 +149,7 @@ def test_an_answer_carries_what_qualifies_it():
     assert result.model is None
     lines = remarks(result)
     assert "unstable balance" in lines[0]
-    assert "snaps at 94%" in lines[1]
+    assert "snaps at 94.0%" in lines[1]
     numbers = summary(result)
     assert numbers["stable"] is False
     assert numbers["snaps"] == [{"released": 0.94, "frame": 10}]

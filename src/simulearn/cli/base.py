@@ -45,7 +45,7 @@ def grid_of(name: str, material: Path | None = None) -> Grid:
     if name in library() and not Path(name).exists():
         return of_material(make(name), material)
     try:
-        return of_material(read_grid(name), material)
+        return of_material(read_grid(name, paths=True), material)
     except InputError as error:
         if isinstance(error.__cause__, FileNotFoundError) and not Path(name).suffix:
             raise InputError(f"{name}: is neither a file nor a grid of the library") from error

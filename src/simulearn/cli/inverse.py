@@ -77,7 +77,7 @@ def optimize(
     from simulearn.inverse import optimize as search
     from simulearn.inverse.keeping import identity, read_past, write_past
 
-    wanted = _of_material(read_task(task), material)
+    wanted = _of_material(read_task(task, paths=True), material)
     limits = {"seconds": seconds, "iterations": iterations, "corrections": corrections}
     named = {"method": method, "engine": engine}
     wanted = wanted.model_copy(
@@ -168,7 +168,7 @@ def rank(
     for path in files:
         if path.suffix.lower() not in (".png", ".pdf", ".svg", ".json"):
             raise InputError(f"{path}: the ending is not one of .png .pdf .svg .json")
-    task = _of_material(read_task(design), material) if _is_task(design) else None
+    task = _of_material(read_task(design, paths=True), material) if _is_task(design) else None
     name = engine or (task.engine if task else "learned")
     simulator = engine_of(name, model)
     with preparing(quiet=as_json):

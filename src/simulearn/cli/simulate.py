@@ -159,7 +159,9 @@ def _many(
         out.print(_overview(rows), soft_wrap=False)
         for name, row in rows.items():
             if isinstance(row, Failure | InputError):
-                err.print(f"[red]failed:[/] {escape(name)}: {escape(_reason(row))}")
+                reason = _reason(row)
+                reason = reason if reason.startswith(f"{name}:") else f"{name}: {reason}"
+                err.print(f"[red]failed:[/] {escape(reason)}")
         if folder is not None:
             out.print(f"wrote {len(rows)} files to {escape(str(folder))}")
     if failed:

@@ -82,7 +82,7 @@ def clean(grid: Grid) -> tuple[Grid, list[Message]]:
 
 
 def fixed_removed(grid: Grid) -> str:
-    """Return what to say when the fixed joint is removed."""
+    """Return the message for a fixed joint that is removed."""
     return (
         f"joint {grid.fixed} is fixed but is removed, as no beam that stays meets it; "
         f"fix a joint of the grid that stays"

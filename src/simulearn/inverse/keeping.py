@@ -132,7 +132,7 @@ def _row(check: Check) -> dict[str, Any]:
 def _check(row: dict[str, Any]) -> Check:
     shift = row["shift"]
     return Check(
-        grid=grid_from_dict(row["grid"]),
+        grid=grid_from_dict(row["grid"], paths=True),
         **{name: row[name] for name in FIGURES},
         shift=None if shift is None else np.array(shift, dtype=float),
     )

@@ -134,10 +134,11 @@ def qualified(result: Result) -> list[str]:
         words.append("snaps at " + ", ".join(f"{snap.released:.0%}" for snap in result.snaps))
     if result.bound_mm is not None:
         words.append(f"error below {result.bound_mm:.2f} mm (9 of 10)")
-    if len(result.warnings) == 1:
-        words.append(result.warnings[0].message)
-    elif result.warnings:
-        words.append(f"{len(result.warnings)} warnings")
+    others = [message for message in result.warnings if message.code != "snap"]
+    if len(others) == 1:
+        words.append(others[0].message)
+    elif others:
+        words.append(f"{len(others)} warnings")
     return words
 
 

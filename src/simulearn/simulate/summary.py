@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 
-from simulearn.schedule import SCHEDULE
 from simulearn.simulate.result import Result
 from simulearn.simulate.resultfile import qualities
 
@@ -43,13 +42,15 @@ def summary(result: Result) -> dict[str, Any]:
 
 
 def remarks(result: Result) -> list[str]:
-    """Return a sentence for each thing that qualifies a result; its warnings are not among them."""
+    """Return a sentence for each thing that qualifies a result and that no warning says."""
     lines = []
     if not result.stable:
         lines.append("the shape is in unstable balance and may snap into another")
-    for snap in result.snaps:
-        name = SCHEDULE.names[snap.frame] if 0 <= snap.frame < len(SCHEDULE.names) else "?"
-        lines.append(f"the grid snaps at {snap.released:.0%} released (first in frame {name})")
+    if all(message.code != "snap" for message in result.warnings):
+        lines += [
+            f"the grid snaps at {snap.released:.1%} released (frame {snap.frame})"
+            for snap in result.snaps
+        ]
     if result.bound_mm is not None:
         lines.append(f"nine of ten such answers are off by less than {result.bound_mm:.2f} mm")
     return lines
