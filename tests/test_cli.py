@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import meshio
@@ -151,6 +152,20 @@ def test_what_qualifies_an_answer_is_shown(run, monkeypatch):
     assert "unstable balance" in err
     assert "snaps at 94.4% released" in err
     assert "material pla-hot-water (" in out
+    assert run("simulate", "saddle", "--json")[2] == ""
+
+
+@pytest.mark.usefixtures("solved")
+def test_a_terminal_says_once_that_something_is_prepared(run, monkeypatch):
+    from simulearn import native
+
+    @contextmanager
+    def compiling(report):
+        report()
+        yield
+
+    monkeypatch.setattr(native, "on_compile", compiling)
+    assert run("simulate", "saddle")[2].count("once on this machine") == 1
     assert run("simulate", "saddle", "--json")[2] == ""
 
 

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -14,6 +15,7 @@ from simulearn.cli.base import Json, app, err, folder_of, out
 from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
 from simulearn.files import replacing
+from simulearn.material import Material, read_material
 
 if TYPE_CHECKING:
     from simulearn.learn.common.evaluate import Evaluation
@@ -108,6 +110,12 @@ def evaluate(
     record: Annotated[
         bool, typer.Option("--record", help="Keep the figures in the model's card.")
     ] = False,
+    material: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="A material (.toml) in place of the one that the trials have."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Compare a model with the trials of a data set that are kept for testing."""
@@ -122,6 +130,10 @@ def evaluate(
         folder_of(output)
     data = read_dataset(dataset, stress=False)
     batches = for_testing(data)
+    if material is not None:
+        batches = [replace(batch, material=read_material(material)) for batch in batches]
+    for batch in batches:
+        _check_material(bundle.card.name, bundle.card.material, batch.material)
     with counting("trials", quiet=as_json) as progress:
         evaluation = evaluate_(trained, batches, progress)
     figures = {
@@ -141,6 +153,17 @@ def evaluate(
     out.print(_table(figures))
     if output is not None:
         out.print(f"wrote {escape(str(output))}/figures.json, trials.csv, errors.png, grids.png")
+
+
+def _check_material(model: str, learnt: Material, given: Material) -> None:
+    """Raise where trials are not of the material that a model has learnt."""
+    if given.physics != learnt.physics:
+        raise InputError(
+            f'the trials are of {given.identity}; the model "{model}" has learnt '
+            f"{learnt.identity}; name another with --material",
+            "material-not-evaluated",
+            "material",
+        )
 
 
 def _write(evaluation: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
