@@ -80,8 +80,10 @@ def test_goals_are_arrays(small):
     ],
 )
 def test_what_is_wrong_is_named_with_its_place(small, path, value, message):
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError, match=message) as error:
         task_from_dict(with_(small, path, value))
+    assert error.value.code != "input"
+    assert error.value.where
 
 
 @pytest.mark.parametrize("data", [[], None, 3, {}, {"schema": "simulearn.task/1"}])

@@ -2,6 +2,7 @@
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -117,7 +118,7 @@ def _many(
 ) -> None:
     """Simulate many grids; each outcome is written as soon as it is there."""
     from simulearn import outputs
-    from simulearn.simulate import Failure, outcome_to_dict, write_json
+    from simulearn.simulate import Failure, Result, outcome_to_dict, write_json
 
     if folder is not None:
         _check_names(names)
@@ -140,9 +141,11 @@ def _many(
     places = list(designs)
     with preparing(quiet=as_json), counting("frames", quiet=as_json) as progress:
         for k, outcome in answering.stream(list(designs.values()), progress):
-            outcomes[places[k]] = outcome
             if folder is not None:
                 write_json(outcome, targets[places[k]])
+                if isinstance(outcome, Result):  # what is written need not stay in memory
+                    outcome = replace(outcome, stress=None, solid=None, displacements=None)
+            outcomes[places[k]] = outcome
     rows = {name: unread.get(name) or outcomes[name] for name in names}
     failed = sum(not _answered(row) for row in rows.values())
     if as_json:

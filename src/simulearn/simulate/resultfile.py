@@ -107,11 +107,11 @@ def result_from_dict(data: Any, *, paths: bool = False) -> Result:
         raise InputError(f'schema: a result has "schema": "{SCHEMA}"')
     for key in ("grid", "engine", "joints", "beams", "seconds"):
         if key not in data:
-            raise InputError(f"{key}: is missing")
+            raise InputError(f"{key}: is missing", "result", key)
     if not isinstance(data["engine"], str):
-        raise InputError("engine: is not a name")
+        raise InputError("engine: is not a name", "result", "engine")
     if not isinstance(data["seconds"], int | float) or not np.isfinite(data["seconds"]):
-        raise InputError("seconds: is not a number")
+        raise InputError("seconds: is not a number", "result", "seconds")
     grid = grid_from_dict(data["grid"], paths=paths)
     return Result(
         grid=grid,
@@ -128,9 +128,9 @@ def _qualities(data: dict[str, Any], material: str) -> dict[str, Any]:
     """Return the fields of a result that qualify it; files of earlier versions have none."""
     bound = data.get("bound_mm")
     if not isinstance(data.get("stable", True), bool):
-        raise InputError("stable: is not true or false", where="stable")
+        raise InputError("stable: is not true or false", "result", "stable")
     if bound is not None and not (isinstance(bound, int | float) and np.isfinite(bound)):
-        raise InputError("bound_mm: is not a number", where="bound_mm")
+        raise InputError("bound_mm: is not a number", "result", "bound_mm")
     model = data.get("model")
     return {
         "material": _read(data, "material", Identity, {"name": material, "digest": ""}),
@@ -148,14 +148,14 @@ def _read(data: dict[str, Any], key: str, kind: type, default: Any) -> Any:
         return kind(**data.get(key, default))
     except (TypeError, ValueError) as error:
         fields = ", ".join(kind.__annotations__)
-        raise InputError(f"{key}: is not an object with {fields}", where=key) from error
+        raise InputError(f"{key}: is not an object with {fields}", "result", key) from error
 
 
 def _read_all(data: dict[str, Any], key: str, kind: type) -> tuple[Any, ...]:
     """Return the objects of a type that a key lists."""
     rows = data.get(key, [])
     if not isinstance(rows, list):
-        raise InputError(f"{key}: is not a list", where=key)
+        raise InputError(f"{key}: is not a list", "result", key)
     return tuple(_read({key: row}, key, kind, None) for row in rows)
 
 
@@ -180,7 +180,9 @@ def read_json(path: Path | str, *, paths: bool = False) -> Result:
     except json.JSONDecodeError as error:
         raise InputError(f"{path}: is not valid JSON: {error}") from error
     except InputError as error:
-        raise error if str(path) in str(error) else InputError(f"{path}: {error}") from error
+        if str(path) in str(error):
+            raise
+        raise InputError(f"{path}: {error}", error.code, error.where) from error
 
 
 def write_npz(result: Result, path: Path | str) -> None:
@@ -262,11 +264,13 @@ def _numbers(data: dict[str, Any], key: str, shape: tuple[int, ...]) -> NDArray[
     try:
         array = np.asarray(data[key], dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(f"{key}: is not an array of numbers") from error
+        raise InputError(f"{key}: is not an array of numbers", "result", key) from error
     if array.shape != shape:
-        raise InputError(f"{key}: has the shape {array.shape}; this grid's is {shape}")
+        raise InputError(
+            f"{key}: has the shape {array.shape}; this grid's is {shape}", "result", key
+        )
     if not np.isfinite(array).all():
-        raise InputError(f"{key}: holds a number that is not finite")
+        raise InputError(f"{key}: holds a number that is not finite", "result", key)
     return array
 
 
