@@ -59,7 +59,8 @@ class Strokes:
         turned = slice(1 - variant % 2, None, 2)
         ends[turned], widths[turned] = ends[turned, ::-1], widths[turned, ::-1]
         change = np.abs(widths[:, 1] - widths[:, 0]) / widths.mean(axis=1)
-        pieces = np.clip(np.ceil(change / STEP), 1, MOST_PIECES).astype(int)
+        # A little less, so that rounding does not decide between two numbers of pieces.
+        pieces = np.clip(np.ceil(change / STEP - 1e-6), 1, MOST_PIECES).astype(int)
         # Row k has pieces[k] + 1 points, and a width after each: the last is that of the turn.
         row = np.repeat(np.arange(len(pieces)), pieces + 1)
         count = np.arange(len(row)) - np.repeat(np.cumsum(pieces + 1) - pieces - 1, pieces + 1)

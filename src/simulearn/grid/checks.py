@@ -115,8 +115,8 @@ def coincident(joints: Numbers, most: int) -> Indices:
     """
     along = joints @ ASLANT
     order = along.argsort(axis=1)
-    along = np.take_along_axis(along, order, 1)
     rows = np.arange(len(joints))
+    along = along[rows[:, None], order]
     pairs = [np.zeros((0, 3), np.int64)]
     count = np.zeros(len(joints), np.int64)
     # Joints at one place are near on the projection: compare each with the next, the next but one
@@ -147,9 +147,9 @@ def lengths(beams: Indices, joints: Numbers, shape: Outlines) -> Lengths:
     full = np.hypot(along[..., 0], along[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         edges = (shape.beams[:, :, 1] - shape.beams[:, :, 0]) @ along[..., None]
-        edges = edges[..., 0] / full[..., None]
-        # The middle of a joint's side lies on the axis.
-        return Lengths(full, edges.mean(axis=2), edges.min(axis=2))
+        right, left = np.moveaxis(edges[..., 0], 2, 0) / full
+    # The middle of a joint's side lies on the axis.
+    return Lengths(full, (right + left) / 2, np.minimum(right, left))
 
 
 def too_short(actuators: Numbers, net: Numbers, limits: Limits) -> Mask:

@@ -30,7 +30,7 @@ from simulearn.grid.checks import (
     unusual,
     usual_length,
 )
-from simulearn.grid.cleaning import fixed_removed, removals
+from simulearn.grid.cleaning import fixed_removed, warnings_of
 from simulearn.grid.grid import Grid
 from simulearn.grid.outline import Outlines, outlines
 from simulearn.grid.structure import structure_errors
@@ -100,7 +100,10 @@ def validate(
     faced = at.beams & shape.sound[0, grid.beams].all(axis=1)  # with an outline at both ends
     crowded = faced & (measured.edge[0] < SHORTEST_EDGE)
     errors += _beam_errors(grid, measured, faced, crowded, limits)
-    warnings = [*removals(grid), *_beam_warnings(measured, faced, limits, training)]
+    warnings = [
+        *warnings_of(grid, at.joints, at.beams),
+        *_beam_warnings(measured, faced, limits, training),
+    ]
     if not coinciding:
         errors += _collisions(shape, faced & ~crowded)
         if training is not None and at.beams.any():
