@@ -114,6 +114,7 @@ class Learned:
         if not (frames.converged[t] and np.isfinite(joints).all() and np.isfinite(sections).all()):
             message = f'the model "{self.bundle.card.name}" has no answer for this grid'
             return Failure(one.given, "no-answer", "grid", message, HINT)
+        stable, snaps = getattr(frames, "stable", None), getattr(frames, "snaps", None)
         return Result(
             grid=one.grid,
             engine=self.name,
@@ -123,8 +124,10 @@ class Learned:
             seconds=seconds,
             material=one.material.identity,
             model=self.bundle.identity,
+            stable=True if stable is None else bool(stable[t]),
             bound_mm=None if frames.bound_mm is None else float(frames.bound_mm[t]),
-            warnings=(*one.warnings, *self._unlike(one.grid)),
+            snaps=() if snaps is None else tuple(snaps[t]),
+            warnings=(*one.warnings, *self._unlike(one.grid), *_left_balance(frames, t)),
             record={"kind": self.bundle.card.kind},
         )
 
@@ -165,6 +168,18 @@ def _loaded(path: Path, digest: str) -> Bundle:
     bundle = bundle_of(path)
     bundle.model  # noqa: B018  (reads the weights, or raises)
     return bundle
+
+
+def _left_balance(frames: Frames, t: int) -> Iterator[Message]:
+    """Yield a warning where a design has left an unstable balance."""
+    left = getattr(frames, "left_balance", None)
+    if left is not None and left[t]:
+        yield Message(
+            "unstable-balance",
+            "grid",
+            "the grid stood on an unstable balance and left it along its softest mode; the "
+            "mirrored shape is as likely",
+        )
 
 
 def designs_of(grids: Sequence[Grid], material: Material) -> Designs:
