@@ -74,6 +74,7 @@ def engines(monkeypatch):
         )
         monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Pretended(name))
 
+    monkeypatch.setattr(search, "warm", lambda engine: None)
     put()
     return put
 
