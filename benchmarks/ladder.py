@@ -6,7 +6,6 @@ The tests assert them, `verify.py` prints them; the sources stand with each rung
 from collections.abc import Callable
 from dataclasses import replace
 
-import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
@@ -15,16 +14,19 @@ from skfem import Basis, ElementHexS2, MeshHex
 
 from simulearn.fea import Layout, Solid, mesh, simulate_grid
 from simulearn.fea.bar import bar, curvature
-from simulearn.fea.equilibrium import Control, Equilibrium
-from simulearn.fea.kernel import points_of, respond
-from simulearn.fea.laws import Law, StVenantKirchhoff, law_of
-from simulearn.fea.structure import PAIRS
+from simulearn.fea.kernels import checks, entries
+from simulearn.fea.kernels.law import ConstitutiveLaw
+from simulearn.fea.laws import law_of
+from simulearn.fea.path import Path
+from simulearn.fea.points import bricks_of
+from simulearn.fea.problem import Control, EquilibriumProblem
 from simulearn.grid import Grid, Rules, draw_valid, make
 from simulearn.material import ElasticData, Material, load_material
 
 Array = NDArray[np.float64]
 
 PLA = load_material("pla-hot-water")
+PAIRS = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]  # of displacement components
 TIGHT = Control(tolerance=1e-8, iterations=40)
 
 # Sze, Liu, Lo 2004, Finite Elem. Anal. Des. 40, table of 3.1: P/Pmax, -U, W.
@@ -68,11 +70,8 @@ def end_shear(layout: Layout = Layout(slabs=16)) -> Array:
     end = tip(solid)
     forces = np.zeros_like(solid.nodes)
     forces[end, 2] = 4.0 / len(end)
-    problem = Equilibrium(solid, law_of(material.law), 0.0, forces)
-    path = [problem.flat()]
-    for fraction in table[:, 0]:
-        path += problem.advance(path, 0.0, float(fraction))
-    steps = [next(p for p in path if p.gravity == f) for f in table[:, 0]]
+    path = Path(EquilibriumProblem(solid, law_of(material.law), 0.0, forces))
+    steps = [path.advance(0.0, float(fraction)) for fraction in table[:, 0]]
     u = np.array([state.u[end].mean(axis=0) for state in steps])
     # Relative to the largest value: the first rows are printed with two digits.
     return np.stack([-u[:, 0] - table[:, 1], u[:, 2] - table[:, 2]], axis=1) / table[-1, 1:]
@@ -89,19 +88,20 @@ def end_moment(turns: float = 0.5, layout: Layout = Layout(slabs=24)) -> Array:
     solid = cantilever(material, length, layout)
     end = tip(solid)
     top, low = (end[solid.nodes[end, 2] * sign > 0.04] for sign in (1, -1))
-    problem = Equilibrium(solid, law_of(material.law), 0.0)
+    problem = EquilibriumProblem(solid, law_of(material.law), 0.0)
     # The load of step k is k times what `problem.load` holds, so that steps can be extrapolated.
-    path, angles, errors = [problem.flat()], [0.0], []
+    steps, angles, errors = [problem.flat()], [0.0], []
     for step in range(1, round(turns * 24) + 1):
         moment = 2 * np.pi * stiffness / length * step / 24
         angle = 2 * angles[-1] - angles[-2] if step > 1 else 2 * np.pi / 24
-        thick, past = 0.1, path
+        thick, path = 0.1, Path(problem, steps[-3:])
         for _ in range(10):
             along = np.array([np.cos(angle), 0, np.sin(angle)])
             problem.load[low] = moment / thick * along / len(low) / step
             problem.load[top] = -moment / thick * along / len(top) / step
-            state = problem.advance(past, 0.0, float(step))[-1]
-            past = [state]
+            if path.last[-1].gravity == step:  # the direction has changed: from there
+                path = Path(problem, [replace(path.last[-1], gravity=step - 1.0)])
+            state = path.advance(0.0, float(step))
             up = (solid.nodes + state.u)[top].mean(axis=0) - (solid.nodes + state.u)[low].mean(
                 axis=0
             )
@@ -109,7 +109,7 @@ def end_moment(turns: float = 0.5, layout: Layout = Layout(slabs=24)) -> Array:
             thick = float(np.linalg.norm(up))
             if abs(angle - before) < 1e-7:
                 break
-        path.append(state)
+        steps.append(state)
         angles.append(angle)
         radius = stiffness / moment
         exact = np.array(
@@ -136,11 +136,10 @@ def bend_45(layout: Layout = Layout(slabs=16)) -> Array:
     solid = replace(solid, nodes=curved)
     forces = np.zeros_like(curved)
     forces[end, 2] = 600.0 / len(end)
-    problem = Equilibrium(solid, law_of(material.law), 0.0, forces)
-    path = [problem.flat()]
+    path = Path(EquilibriumProblem(solid, law_of(material.law), 0.0, forces))
     for step in range(1, 11):
-        path += problem.advance(path, 0.0, step / 10)
-    return np.asarray(path[-1].u[end].mean(axis=0))
+        path.advance(0.0, step / 10)
+    return np.asarray(path.last[-1].u[end].mean(axis=0))
 
 
 def bilayer(upper: int, layers: int = 2, strain: float = 1e-4) -> float:
@@ -156,24 +155,22 @@ def bilayer(upper: int, layers: int = 2, strain: float = 1e-4) -> float:
     layer = np.arange(len(solid.bricks)) % (2 * layers)  # the fastest index of the bricks
     growth = np.zeros_like(solid.growth)
     growth[layer >= 2 * layers - upper, :, 0] = -strain
-    problem = Equilibrium(replace(solid, growth=growth), law_of(material.law), 0.0, control=TIGHT)
-    state = problem.advance([problem.flat()], 1.0, 0.0)[-1]
+    solid = replace(solid, growth=growth)
+    path = Path(EquilibriumProblem(solid, law_of(material.law), 0.0, control=TIGHT))
+    state = path.advance(1.0, 0.0)
     m = upper / (2 * layers - upper)
     exact = 6 * strain * (1 + m) ** 2 / (4.0 * (3 * (1 + m) ** 2 + (1 + m) * (m**2 + 1 / m)))
     return np.radians(curvature(solid, state.u)) / exact
 
 
-def brick(law: Law, stretch: float) -> float:
+def brick(law: ConstitutiveLaw, stretch: float) -> float:
     """Return the force (N) that stretches one 1 mm brick whose sides are free."""
     solid = unit_brick()
-    points = points_of(solid)
 
     def forces(lateral: float) -> Array:
-        u = solid.nodes[solid.bricks] * (np.array([stretch, lateral, lateral]) - 1)
-        carried = jnp.zeros((3, 3, points.volumes.size))
-        return np.asarray(respond(law, points, u, 0.0, carried).residual)[0]
+        return residual(solid, law, solid.nodes * (np.array([stretch, lateral, lateral]) - 1))
 
-    x = solid.nodes[solid.bricks[0]]
+    x = solid.nodes
     side = x[:, 1] > 0.999
     lateral = brentq(lambda m: forces(m)[side, 1].sum(), 0.5, 1.2, xtol=1e-14)
     return float(forces(lateral)[x[:, 0] > 0.999, 0].sum())
@@ -201,8 +198,8 @@ def sag(load: float = 0.02) -> float:
     material = elastic(modulus, poisson, 7.2, 4.0)
     solid = cantilever(material, length, Layout())
     weight = load * PLA.gravity.body_force
-    problem = Equilibrium(solid, law_of(material.law), weight, control=TIGHT)
-    state = problem.advance([problem.flat()], 0.0, 1.0)[-1]
+    path = Path(EquilibriumProblem(solid, law_of(material.law), weight, control=TIGHT))
+    state = path.advance(0.0, 1.0)
     q, inertia, area = weight * 28.8, 7.2 * 4.0**3 / 12, 28.8
     exact = q * length**4 / (8 * modulus * inertia) + q * length**2 / (
         2 * 5 / 6 * modulus / 2 * area
@@ -210,11 +207,9 @@ def sag(load: float = 0.02) -> float:
     return float(-state.u[tip(solid), 2].mean() / exact)
 
 
-def svk() -> StVenantKirchhoff:
+def svk() -> ConstitutiveLaw:
     """Return a St Venant-Kirchhoff law with PLA's constants."""
-    law = law_of(ElasticData(kind="st-venant-kirchhoff", modulus=2.2, poisson=0.406))
-    assert isinstance(law, StVenantKirchhoff)
-    return law
+    return law_of(ElasticData(kind="st-venant-kirchhoff", modulus=2.2, poisson=0.406))
 
 
 def distorted(seed: int = 0) -> Solid:
@@ -237,17 +232,13 @@ def distorted(seed: int = 0) -> Solid:
     )
 
 
-def residual(solid: Solid, law: Law, u: Array, released: float = 0.0) -> Array:
+def residual(solid: Solid, law: ConstitutiveLaw, u: Array, released: float = 0.0) -> Array:
     """Return the internal forces (N, 3) of a solid."""
-    points = points_of(solid)
-    none = jnp.zeros((3, 3, points.volumes.size))
-    forces = np.asarray(respond(law, points, u[solid.bricks], released, none).residual)
-    total = np.zeros_like(solid.nodes)
-    np.add.at(total, solid.bricks, forces)
-    return total
+    forces = entries.internal(law, bricks_of(solid)[0], np.ascontiguousarray(u), released)[0]
+    return np.asarray(forces)
 
 
-def patch(law: Law) -> float:
+def patch(law: ConstitutiveLaw) -> float:
     """Return the largest inner force of distorted bricks in homogeneous deformation.
 
     It is relative to the largest force on the boundary.
@@ -259,7 +250,7 @@ def patch(law: Law) -> float:
     return float(abs(forces[inner]).max() / abs(forces).max())
 
 
-def rigid(law: Law) -> float:
+def rigid(law: ConstitutiveLaw) -> float:
     """Return the change of the forces of growing, deformed bricks when they are turned.
 
     It is the difference between the forces turned and the forces after turning, relative.
@@ -274,30 +265,50 @@ def rigid(law: Law) -> float:
     return float(abs(after - before @ R.T).max() / abs(before).max())
 
 
-def tangent(law: Law) -> float:
+def tangent(law: ConstitutiveLaw) -> float:
     """Return the relative difference between tangent and central differences of the forces."""
     rng = np.random.default_rng(2)
     solid = unit_brick()
     solid = replace(solid, growth=rng.uniform(-0.09, 0.04, solid.growth.shape))
-    points = points_of(solid)
-    u = rng.normal(scale=0.02, size=(1, 20, 3))
-    stiffness = full(np.asarray(respond(law, points, u, 0.8, None).entries))[0]
+    u = rng.normal(scale=0.02, size=(20, 3))
+    order = solid.bricks[0]
+    moved = np.empty_like(u)
+    moved[order] = u
+    stiffness = stiffness_of(solid, law, moved, 0.8)[0]
     step, columns = 1e-6, []
     for k in range(60):
-        du = np.zeros(60)
-        du[k] = step
-        du = du.reshape(1, 20, 3)
-        ahead, back = (respond(law, points, u + d, 0.8, None).residual for d in (du, -du))
-        columns.append(np.asarray(ahead - back).reshape(60) / (2 * step))
+        du = np.zeros_like(u)
+        du[order[k // 3], k % 3] = step
+        ahead, back = (residual(solid, law, moved + d, 0.8) for d in (du, -du))
+        columns.append((ahead - back)[order].reshape(60) / (2 * step))
     return float(abs(np.array(columns).T - stiffness).max() / abs(stiffness).max())
 
 
-def full(entries: Array) -> Array:
-    """Return stiffness matrices (E, 60, 60) from their entries (E, 6, 20, 20)."""
-    blocks = np.empty((len(entries), 20, 3, 20, 3))
+def stiffness_of(
+    solid: Solid,
+    law: ConstitutiveLaw,
+    u: Array,
+    released: float = 0.0,
+    carried: Array | None = None,
+) -> Array:
+    """Return the stiffness matrices (E, 60, 60) of a solid's bricks at displacements u (N, 3).
+
+    Args:
+        solid: the solid.
+        law: its law.
+        u: (N, 3) mm.
+        released: fraction of the stress that is released.
+        carried: (M, 6) stress of the geometric stiffness; None for that of the displacements.
+    """
+    bricks = bricks_of(solid)[0]
+    stress = np.zeros((bricks.volumes.size, 6)) if carried is None else carried
+    mixed = carried is not None
+    stiffness, _ = checks.stiffness_of(law, bricks, u, released, stress, mixed)
+    pairs = stiffness.reshape(-1, 20, len(PAIRS), 20)
+    blocks = np.empty((len(pairs), 20, 3, 20, 3))
     for pair, (k, l) in enumerate(PAIRS):  # noqa: E741
-        blocks[:, :, k, :, l] = entries[:, pair]
-        blocks[:, :, l, :, k] = entries[:, pair].swapaxes(1, 2)
+        blocks[:, :, k, :, l] = pairs[:, :, pair]
+        blocks[:, :, l, :, k] = pairs[:, :, pair].swapaxes(1, 2)
     return blocks.reshape(-1, 60, 60)
 
 
@@ -380,8 +391,7 @@ def _clamped(grid: Grid, material: Material) -> Array:
     solid = mesh(grid, material)
     joint = solid.bricks[(solid.parts == [-1, grid.fixed]).all(axis=1)]
     solid = replace(solid, fixed=np.unique(joint))
-    problem = Equilibrium(solid, law_of(material.law), 0.0)
-    path = [problem.flat()]
+    path = Path(EquilibriumProblem(solid, law_of(material.law), 0.0))
     for step in range(1, 11):
-        path += problem.advance(path, step / 10, 0.0)
-    return np.asarray((solid.nodes + path[-1].u)[solid.joints].mean(axis=1))
+        path.advance(step / 10, 0.0)
+    return np.asarray((solid.nodes + path.last[-1].u)[solid.joints].mean(axis=1))

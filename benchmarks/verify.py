@@ -9,8 +9,8 @@ import ladder
 from report import Report
 from simulearn.fea import Layout, simulate_grid
 from simulearn.fea.bar import bar, curvature
-from simulearn.fea.equilibrium import Control
-from simulearn.fea.laws import NeoHookean, law_of
+from simulearn.fea.laws import law_of, neo_hookean
+from simulearn.fea.problem import Control
 from simulearn.grid import make
 
 
@@ -20,7 +20,7 @@ def main() -> None:
     report = Report("verify", "The verification ladder")
     rows: list[tuple[str, str, str]] = []
     marlow = law_of(pla.law)
-    laws = {"Marlow": marlow, "neo-Hookean": NeoHookean(0.78, 3.9), "St Venant": ladder.svk()}
+    laws = {"Marlow": marlow, "neo-Hookean": neo_hookean(0.78, 3.9), "St Venant": ladder.svk()}
     for title, rung, asked in (
         ("Patch test: inner forces of distorted bricks, relative", ladder.patch, "1e-12"),
         ("Rigid turn of growing bricks: change of forces, relative", ladder.rigid, "1e-12"),

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from simulearn.errors import InputError
 from simulearn.fea import COARSE, THREE_ACROSS, Layout, mesh
-from simulearn.fea.kernel import points_of
 from simulearn.fea.mesh import cuts
+from simulearn.fea.points import bricks_of
 from simulearn.grid import Grid, Rules, draw_valid, drop_beams, make, outline
 from simulearn.material import load_material
 
@@ -27,7 +27,7 @@ def test_volume_is_that_of_the_outlines(layout: Layout) -> None:
     shape = outline(grid, PLA.section)
     beams = shape.beams[:, [0, 1, 1, 0], [0, 0, 1, 1]]
     flat = area(shape.joints).sum() + abs(area(beams)).sum()
-    points = points_of(mesh(grid, PLA, layout))
+    points = bricks_of(mesh(grid, PLA, layout))[0]
     assert float(points.volumes.sum()) == pytest.approx(4.0 * flat, rel=1e-12)
     assert (np.asarray(points.volumes) > 0).all()
 

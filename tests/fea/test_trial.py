@@ -72,14 +72,17 @@ def test_the_default_tolerance_is_tight_enough(saddle: Trial) -> None:
 
 
 def test_an_increment_that_does_not_converge_is_halved(saddle: Trial) -> None:
-    hurried = simulate_grid(make("saddle"), PLA, control=Control(iterations=5))
+    hurried = simulate_grid(make("saddle"), PLA, control=Control(iterations=3))
     assert hurried.record["halved"] > 0
     assert abs(hurried.joints - saddle.joints).max() < 1e-4
 
 
 def test_failure_names_the_frame_and_the_reason() -> None:
-    with pytest.raises(ComputationError, match=r"frame 1 of 11: no equilibrium beyond 0.0 % .* mm"):
-        simulate_grid(make("saddle"), PLA, control=Control(iterations=1, halvings=2))
+    with pytest.raises(ComputationError, match=r"frame 1 of 11: .* at 0.0 % of the stress") as info:
+        simulate_grid(make("saddle"), PLA, control=Control(iterations=0, halvings=2))
+    assert info.value.code == "no-equilibrium"
+    assert info.value.where == "frame 1"
+    assert info.value.hint
 
 
 def test_progress_is_told_frame_by_frame() -> None:
@@ -105,7 +108,7 @@ def test_progress_is_told_frame_by_frame() -> None:
 def test_other_topologies(grid: Grid) -> None:
     trial = simulate_grid(grid, PLA)
     assert np.isfinite(trial.joints).all()
-    assert trial.record["stable"]
+    assert trial.stable
     assert trial.joints.shape[1] == len(grid.joints)
     # Beams stay attached: a section's corners are corners of joints at both ends.
     ends = trial.beams[-1][:, [0, 2]].reshape(-1, 3)

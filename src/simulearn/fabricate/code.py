@@ -22,13 +22,13 @@ NUMBER = re.compile(r"^[Nn]\d+\s*")
 COMMAND = re.compile(r"(?=\b[GgMm]\d)")
 HEAD = re.compile(r"([GM])\s*0*(\d+(?:\.\d+)?)", re.IGNORECASE)
 SHOWN = ("M117", "M118")  # their text is shown, not done
-ORIGIN = "moves the origin, and with it the whole print"
+ORIGIN = "moves the origin, and with it the print"
 FORBIDDEN = {
     "G20": "counts in inches, and files are in millimetres",
     "G52": ORIGIN,
     "M206": ORIGIN,
     "M428": ORIGIN,
-    "M851": "moves the probe, and with it the height of the whole print",
+    "M851": "moves the probe, and with it the height of the print",
     "M92": "changes how far the machine moves",
     "M200": "changes how E is counted",
     "SET_GCODE_OFFSET": ORIGIN,
@@ -162,7 +162,7 @@ class _Checked:
     def _move(self, rest: str, where: str) -> None:
         if GLUED.search(rest):  # 1E5 is X1 and E5 to some printers, 100000 to others
             raise InputError(
-                f"{where}: printers read {rest.strip()} in two ways; put a space before E"
+                f"{where}: printers differ in how they read {rest.strip()}; put a space before E"
             )
         for axis, text in TOKEN.findall(rest):
             axis = axis.upper()

@@ -1,9 +1,10 @@
 """Finite elements: the truth that everything else learns from."""
 
-from simulearn.fea.equilibrium import Control
 from simulearn.fea.mesh import COARSE, THREE_ACROSS, Layout, mesh
+from simulearn.fea.problem import Control
 from simulearn.fea.solid import Solid
-from simulearn.fea.trial import FRAMES, Trial, simulate_grid
+from simulearn.fea.trial import Trial, simulate_grid
+from simulearn.schedule import FRAMES
 
 __all__ = [
     "COARSE",

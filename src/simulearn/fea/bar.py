@@ -29,7 +29,7 @@ def curvature(solid: Solid, displacements: Array, begin: float = 0.25, end: floa
         begin: where the measured part begins along the beam, 0 to 1.
         end: where it ends.
     """
-    faces = structure_of(solid)[0].faces[0]
+    faces = structure_of(solid).faces[0]
     at = (solid.nodes + displacements)[faces]
     first, last = round(begin * solid.slabs), round(end * solid.slabs)
     high = solid.nodes[faces][..., 2] > 0

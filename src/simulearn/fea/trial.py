@@ -14,36 +14,38 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.compiled import make_room
-from simulearn.errors import ComputationError
-from simulearn.fea.equilibrium import Control, Equilibrium, State
+from simulearn.errors import Cancel, ComputationError, Message
+from simulearn.fea.kernels import entries
 from simulearn.fea.laws import law_of
 from simulearn.fea.mesh import COARSE, Layout, mesh
+from simulearn.fea.path import Path
+from simulearn.fea.problem import Control, EquilibriumProblem, SolidState
 from simulearn.fea.solid import Solid
-from simulearn.fea.stress import cauchy_stress, sampled_stress
+from simulearn.fea.stress import cauchy_stress, sample_points, sampled_stress
 from simulearn.grid import Grid
 from simulearn.material import Material
+from simulearn.schedule import FRAMES, SCHEDULE, Snap
 
 Array = NDArray[np.float64]
 
-STEPS = 10  # of stage 1
-FRAMES = STEPS + 2  # flat, stage 1, creep
-
-Progress = Callable[[int, int], None]
+Progress = Callable[[int, int], None]  # (frames done, frames in all)
 
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """The twelve frames of a grid: flat, ten of release, one after creep; mm, MPa, +z up.
+    """The frames of a grid (F of them, see `schedule`): flat, release, creep; mm, MPa, +z up.
 
     Attributes:
-        joints: (12, J, 8, 3) corners of the joints.
-        beams: (12, B, 3, 4, 3) corners of the beams' sections at start, middle and end.
-        stress: (12, B, 4, 4, 6) components 11 22 33 12 13 23 in global axes.
+        joints: (F, J, 8, 3) corners of the joints.
+        beams: (F, B, 3, 4, 3) corners of the beams' sections at start, middle and end.
+        stress: (F, B, 4, 4, 6) components 11 22 33 12 13 23 in global axes.
         seconds: time it took.
-        record: law, iterations a frame, halved increments, whether all frames are stable, size.
+        record: law, iterations a frame, halved increments, size.
         solid: the solid.
-        displacements: (12, N, 3) of its nodes.
+        displacements: (F, N, 3) of its nodes.
+        stable: whether all frames are stable equilibria, as far as the solver can tell.
+        snaps: sudden motions to another equilibrium.
+        warnings: what qualifies the answer.
     """
 
     joints: Array
@@ -53,6 +55,9 @@ class Trial:
     record: dict[str, Any]
     solid: Solid
     displacements: Array
+    stable: bool = True
+    snaps: tuple[Snap, ...] = ()
+    warnings: tuple[Message, ...] = ()
 
     @classmethod
     def of(
@@ -62,6 +67,9 @@ class Trial:
         stress: Sequence[Array],
         begun: float,
         record: dict[str, Any],
+        stable: bool = True,
+        snaps: Sequence[Snap] = (),
+        warnings: Sequence[Message] = (),
     ) -> "Trial":
         """Return the trial of a solid's frames, begun at a time of `time.perf_counter`."""
         u = np.stack(displacements)
@@ -74,6 +82,9 @@ class Trial:
             record=record,
             solid=solid,
             displacements=u,
+            stable=stable,
+            snaps=tuple(snaps),
+            warnings=tuple(warnings),
         )
 
 
@@ -83,6 +94,7 @@ def simulate_grid(
     layout: Layout = COARSE,
     control: Control = Control(),
     progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> Trial:
     """Simulate a grid in its bath.
 
@@ -92,59 +104,78 @@ def simulate_grid(
         layout: of the mesh.
         control: convergence settings.
         progress: called with (frames done, frames in all) after each frame.
+        cancel: token that stops the simulation within an iteration.
 
     Raises:
         InputError: the grid cannot be meshed.
-        ComputationError: an increment finds no equilibrium.
+        ComputationError: an increment has no equilibrium, nor comes to rest elsewhere.
+        CancelledError: the token said so.
     """
     begun = time.perf_counter()
-    make_room()
-    problem = Equilibrium(
+    problem = EquilibriumProblem(
         mesh(grid, material, layout),
         law_of(material.law),
         material.gravity.body_force,
         control=control,
+        cancel=cancel,
     )
-    creep = 1 + material.creep.amplitude
-    frames: list[State] = []
+    gravity = SCHEDULE.gravity(material.creep.amplitude)
+    path = Path(problem)
+    frames: list[SolidState] = []
     spent: list[int] = []
 
-    def save(state: State) -> None:
+    def save(state: SolidState) -> None:
         frames.append(state)
         spent.append(problem.iterations - sum(spent))
         if progress:
             progress(len(frames), FRAMES)
 
-    save(problem.flat())
+    save(path.last[-1])
     try:
         # Gravity first: bringing both up at once takes more iterations, and fails more often.
-        path = problem.advance(frames, 0.0, 1.0)[-1:]
-        for step in range(1, STEPS + 1):
-            path += problem.advance(path, step / STEPS, 1.0)
-            save(path[-1])
-        save(problem.advance(path[-1:], 1.0, creep)[-1])
+        path.advance(0.0, gravity[1], 1)
+        path.restart()
+        for frame in range(1, FRAMES - 1):
+            save(path.advance(SCHEDULE.released[frame], gravity[frame], frame))
+        path.restart()
+        save(path.advance(SCHEDULE.released[-1], gravity[-1], FRAMES - 1))
     except ComputationError as error:
-        raise ComputationError(f"frame {len(frames)} of {FRAMES - 1}: {error}") from error
+        where = f"frame {len(frames)}"
+        raise ComputationError(
+            f"{where} of {FRAMES - 1}: {error}", code=error.code, where=where, hint=error.hint
+        ) from error
 
-    solid, points = problem.solid, problem.points
-    softening = [1.0] * (FRAMES - 1) + [creep]
-    stress = [
-        sampled_stress(
-            solid,
-            points,
-            state.u,
-            state.released,
-            np.asarray(cauchy_stress(problem.law, points, state.u[solid.bricks], state.released))
-            / soft,
-        )
-        for state, soft in zip(frames, softening, strict=True)
-    ]
+    creep = 1 + material.creep.amplitude
+    stable = all(state.stable for state in frames)
     record = {
         "law": material.law.kind,
         "iterations": spent,
-        "halved": problem.halved,
-        "stable": all(state.stable for state in frames),
-        "bricks": len(solid.bricks),
-        "unknowns": 3 * (len(solid.nodes) - len(solid.fixed)),
+        "corrections": problem.corrections,
+        "halved": path.halved,
+        "stable": stable,
+        "snaps": [[snap.released, snap.frame] for snap in path.snaps],
+        "bricks": len(problem.solid.bricks),
+        "unknowns": int(3 * (len(problem.solid.nodes) - len(problem.solid.fixed))),
     }
-    return Trial.of(solid, [state.u for state in frames], stress, begun, record)
+    return Trial.of(
+        problem.solid,
+        [state.u for state in frames],
+        [
+            _stress(problem, state, creep if frame == FRAMES - 1 else 1.0)
+            for frame, state in enumerate(frames)
+        ],
+        begun,
+        record,
+        stable,
+        path.snaps,
+        path.messages,
+    )
+
+
+def _stress(problem: EquilibriumProblem, state: SolidState, softening: float) -> Array:
+    """Return the sampled stress of a frame whose elastic energy is divided by `softening`."""
+    at = sample_points(problem.solid)
+    s = state.released
+    _, _, F, P, _ = entries.internal(problem.law, problem.bricks, state.u, s)
+    cauchy = cauchy_stress(F[at], P[at]) / softening
+    return sampled_stress(problem.solid, s, F[at], cauchy)

@@ -1,7 +1,7 @@
 """The rules of a design as numbers, for many designs of one topology at once.
 
-`grid.validation` words them for people. Every rule has one place here, so that a grid that is
-valid alone is valid among a hundred.
+`grid.validation` writes the messages. Each rule is in one place, so that a grid is valid among a
+hundred exactly if it is valid alone.
 """
 
 from dataclasses import dataclass
@@ -46,8 +46,8 @@ class TrainingRange:
 
 
 @dataclass(frozen=True)
-class Topology:
-    """What the beams and the fixed joint alone say about a design.
+class Connections:
+    """What of the rules depends on the beams and the fixed joint alone.
 
     Attributes:
         joints: (J,) whether a joint stays when dangling beams are taken off.
@@ -77,12 +77,12 @@ class Lengths:
     edge: Numbers
 
 
-def topology(grid: Grid) -> Topology:
-    """Return what the beams and the fixed joint of a grid say, wherever its joints lie."""
+def connections(grid: Grid) -> Connections:
+    """Return which beams and joints of a grid stay and which are connected."""
     joints, beams = kept(grid.beams, len(grid.joints))
     parts = _parts(grid)
     sound = bool(beams.any() and joints[grid.fixed] and len(parts) == 1)
-    return Topology(joints, beams, parts, sound)
+    return Connections(joints, beams, parts, sound)
 
 
 def _parts(grid: Grid) -> list[set[int]]:
@@ -108,15 +108,15 @@ def coincident(joints: Numbers, most: int) -> Indices:
 
     Args:
         joints: (T, J, 2) mm.
-        most: a design of which so many pairs are found is left at that.
+        most: after so many pairs of one design, no more of it are sought.
 
     Returns:
         (pairs, 3) design, joint, joint of higher number; in rising order.
     """
     along = joints @ ASLANT
     order = along.argsort(axis=1)
-    along = np.take_along_axis(along, order, 1)
     rows = np.arange(len(joints))
+    along = along[rows[:, None], order]
     pairs = [np.zeros((0, 3), np.int64)]
     count = np.zeros(len(joints), np.int64)
     # Joints at one place are near on the projection: compare each with the next, the next but one
@@ -139,17 +139,20 @@ def coincident(joints: Numbers, most: int) -> Indices:
 
 
 def lengths(beams: Indices, joints: Numbers, shape: Outlines) -> Lengths:
-    """Return the lengths of the beams of designs (T, J, 2).
+    """Return the lengths of the beams of designs; they mean nothing where an end has no outline.
 
-    They mean nothing for beams whose ends have no outline.
+    Args:
+        beams: (B, 2) joint indices.
+        joints: (T, J, 2) mm.
+        shape: outlines of the same designs.
     """
     along = joints[:, beams[:, 1]] - joints[:, beams[:, 0]]
     full = np.hypot(along[..., 0], along[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         edges = (shape.beams[:, :, 1] - shape.beams[:, :, 0]) @ along[..., None]
-        edges = edges[..., 0] / full[..., None]
-        # The middle of a joint's side lies on the axis.
-        return Lengths(full, edges.mean(axis=2), edges.min(axis=2))
+        right, left = np.moveaxis(edges[..., 0], 2, 0) / full
+    # The middle of a joint's side lies on the axis.
+    return Lengths(full, (right + left) / 2, np.minimum(right, left))
 
 
 def too_short(actuators: Numbers, net: Numbers, limits: Limits) -> Mask:
@@ -167,14 +170,27 @@ def too_short(actuators: Numbers, net: Numbers, limits: Limits) -> Mask:
 
 
 def usual_length(limits: Limits, training: TrainingRange | None) -> tuple[float, float]:
-    """Return the least and most usual length of a beam between the centres of its joints, mm."""
+    """Return the least and most usual length of a beam between the centres of its joints, mm.
+
+    Args:
+        limits: the material's.
+        training: the grids that the model that will answer was trained on; its lengths replace
+            the material's.
+    """
     return training.beam_length if training else (0.0, limits.beam_length)
 
 
 def unusual(
     measured: Lengths, limits: Limits, training: TrainingRange | None
 ) -> tuple[Mask, Mask, Mask]:
-    """Return which beams (T, B) are long, which are short and which have a short net length."""
+    """Return which beams (T, B) are long, which are short and which have a short net length.
+
+    Args:
+        measured: lengths of the beams.
+        limits: the material's.
+        training: the grids that the model that will answer was trained on; its lengths replace
+            the material's.
+    """
     least, most = usual_length(limits, training)
     return (
         measured.full > most + ROUNDING,
@@ -184,7 +200,12 @@ def unusual(
 
 
 def outside(dimension: Numbers, training: TrainingRange) -> Mask:
-    """Return which dimensions, mm, lie outside those of the training."""
+    """Return which dimensions lie outside those of the training.
+
+    Args:
+        dimension: mm, largest distance from the fixed joint to another joint.
+        training: the grids that a model was trained on.
+    """
     least, most = training.dimension
     return ~((dimension >= least - ROUNDING) & (dimension <= most + ROUNDING))
 
@@ -216,7 +237,7 @@ def collisions(shape: Outlines, roomy: Mask, most: int | None = None) -> Indices
 
 @dataclass(frozen=True)
 class Checks:
-    """What `check_designs` says about T designs of one topology.
+    """The validity of T designs of one topology.
 
     Attributes:
         valid: (T,) whether a design has no error.
@@ -238,7 +259,7 @@ def check_designs(
     limits: Limits | None = None,
     training: TrainingRange | None = None,
 ) -> Checks:
-    """Return which designs of one topology are valid, as `validate` says it of each.
+    """Return which designs of one topology are valid; the rules are those of `validate`.
 
     Args:
         beams: (B, 2) joint indices.
@@ -257,7 +278,7 @@ def check_designs(
     like = Grid(np.zeros(joints.shape[1:]), beams, np.zeros(len(beams)), fixed)
     for wrong in structure_errors(like):
         raise InputError(wrong.message, wrong.code, wrong.where)
-    at = topology(like)
+    at = connections(like)
     shape = outlines(like.beams, joints, material.section.width, at.beams)
     measured = lengths(like.beams, joints, shape)
     crowded = measured.edge < SHORTEST_EDGE

@@ -282,7 +282,9 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
         now = _between(frames, k, to)
         near = k > 1 or at > 0
 
-        def find(descend: bool = False, shove: float = 0.0, now: Any = now, near: Any = near) -> bool:
+        def find(
+            descend: bool = False, shove: float = 0.0, now: Any = now, near: Any = near
+        ) -> bool:
             done = _follow(
                 grid, now, None, unguided, 1, anywhere, short, tolerance, near, descend, shove
             )

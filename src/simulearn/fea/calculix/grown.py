@@ -16,7 +16,7 @@ from simulearn.fea.calculix.growth import initial_strain, orthotropic, uniform
 from simulearn.fea.calculix.output import read_dat, read_sta
 from simulearn.fea.calculix.process import Ccx
 from simulearn.fea.calculix.schedule import Step
-from simulearn.fea.calculix.state import State, Told
+from simulearn.fea.calculix.state import StepResult, Told
 from simulearn.fea.solid import Solid
 from simulearn.material import ElasticData
 
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 def solve(
     ccx: Ccx, solid: Solid, law: ElasticData, steps: Sequence[Step], told: Told
-) -> list[State]:
+) -> list[StepResult]:
     """Return the state at the end of each step.
 
     Args:
@@ -58,7 +58,7 @@ def solve(
     counts = [0] * len(steps)
     for step, _, iterations in read_sta(ccx.path("sta")):
         counts[step - 1] += iterations
-    return [State(*values, runs=0) for values in zip(moves, stresses, counts, strict=True)]
+    return [StepResult(*values, runs=0) for values in zip(moves, stresses, counts, strict=True)]
 
 
 def _material(

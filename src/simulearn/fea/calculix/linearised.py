@@ -22,9 +22,9 @@ from simulearn.fea.calculix.moduli import COLUMN, ROW, moduli_of
 from simulearn.fea.calculix.output import read_dat, read_sta
 from simulearn.fea.calculix.process import Ccx, NotConvergedError
 from simulearn.fea.calculix.schedule import Step
-from simulearn.fea.calculix.state import State, Told
-from simulearn.fea.kernel import points_of
-from simulearn.fea.laws import Law
+from simulearn.fea.calculix.state import StepResult, Told
+from simulearn.fea.kernels.law import ConstitutiveLaw
+from simulearn.fea.points import bricks_of
 from simulearn.fea.solid import Solid
 
 Array = NDArray[np.float64]
@@ -39,7 +39,9 @@ MOST_RUNS = 20
 MOST_HALVINGS = 4
 
 
-def solve(ccx: Ccx, solid: Solid, law: Law, steps: Sequence[Step], told: Told) -> list[State]:
+def solve(
+    ccx: Ccx, solid: Solid, law: ConstitutiveLaw, steps: Sequence[Step], told: Told
+) -> list[StepResult]:
     """Return the state at the end of each step.
 
     Args:
@@ -62,7 +64,7 @@ def solve(ccx: Ccx, solid: Solid, law: Law, steps: Sequence[Step], told: Told) -
     return states
 
 
-def _advance(problem: "_Problem", past: Past, step: Step, halvings: int) -> State:
+def _advance(problem: "_Problem", past: Past, step: Step, halvings: int) -> StepResult:
     """Solve a step: from an extrapolation, else from the last state, else in halves."""
     reason: NotConvergedError
     for start in _starts(past, step):
@@ -80,7 +82,7 @@ def _advance(problem: "_Problem", past: Past, step: Step, halvings: int) -> Stat
     half = _advance(problem, past, middle, halvings - 1)
     rest = _advance(problem, past, step, halvings - 1)
     counts = half.iterations + rest.iterations, half.runs + rest.runs
-    return State(rest.displacements, rest.stress, *counts)
+    return StepResult(rest.displacements, rest.stress, *counts)
 
 
 def _starts(past: Past, step: Step) -> Iterator[Array]:
@@ -97,18 +99,21 @@ def _starts(past: Past, step: Step) -> Iterator[Array]:
 class _Problem:
     """A solid and its law, for CalculiX to solve at one state after the other."""
 
-    def __init__(self, ccx: Ccx, solid: Solid, law: Law) -> None:
-        points = points_of(solid)
+    def __init__(self, ccx: Ccx, solid: Solid, law: ConstitutiveLaw) -> None:
+        bricks, _, _ = bricks_of(solid)
+        c, s = bricks.axis.T
+        zero, one = np.zeros_like(c), np.ones_like(c)
+        frames = np.stack([[c, s, zero], [-s, c, zero], [zero, zero, one]]).transpose(2, 0, 1)
         self.ccx = ccx
         self.solid = solid
         self.moduli = moduli_of(law)
-        self.gradients = np.asarray(points.gradients)
-        self.frames = jnp.repeat(points.frame, len(solid.weights), axis=0)
-        self.growth = points.growth.reshape(-1, 3)
+        self.gradients = bricks.gradients
+        self.frames = np.repeat(frames, len(solid.weights), axis=0)
+        self.growth = bricks.growth.reshape(-1, 3)
         self.place = np.argsort(matching(solid.points))  # of CalculiX's points among ours
         self.mesh = list(deck.mesh(solid))
 
-    def equilibrium(self, step: Step, u: Array) -> State:
+    def equilibrium(self, step: Step, u: Array) -> StepResult:
         """Return the equilibrium of a step, sought from displacements u (N, 3).
 
         Raises:
@@ -128,14 +133,16 @@ class _Problem:
             change = np.linalg.norm(moves[-1] - u, axis=1).max()
             u = moves[-1]
             if change < CHANGE:
-                return State(u, stresses[-1], iterations, run)
+                return StepResult(u, stresses[-1], iterations, run)
         raise NotConvergedError(f"still moving by {change:.2g} mm after {MOST_RUNS} runs")
 
     def _linear(self, release: float, u: Array) -> tuple[Array, Array]:
         """Return D (E, 6, 6) and E0 (E, 8, 6) at CalculiX's points, tensor strain."""
-        H = np.einsum("enk,eqni->eqki", u[self.solid.bricks], self.gradients)
+        H = np.einsum("enk,eqin->eqki", u[self.solid.bricks], self.gradients)
         E = ((H + H.swapaxes(2, 3) + H.swapaxes(2, 3) @ H) / 2)[..., ROW, COLUMN] * SHEARS
-        S, D = self.moduli(E.reshape(-1, 6), self.frames, 1 + release * self.growth)
+        S, D = self.moduli(
+            *(jnp.asarray(x) for x in (E.reshape(-1, 6), self.frames, 1 + release * self.growth))
+        )
         stress = np.asarray(S).reshape(E.shape)
         mean = np.einsum("eqij,q->eij", np.asarray(D).reshape(*E.shape, 6), self.solid.weights)
         if not (np.isfinite(mean).all() and np.isfinite(stress).all()):

@@ -12,13 +12,14 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from simulearn.fea.laws import Law
+from simulearn.fea.calculix.energy import energy as density
+from simulearn.fea.kernels.law import ConstitutiveLaw
 
 # The order of CalculiX: 11 22 33 12 13 23.
 ROW, COLUMN = np.array([[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]]).T
 
 
-def moduli_of(law: Law) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
+def moduli_of(law: ConstitutiveLaw) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
     """Return the function that gives S (M, 6) and dS/dE (M, 6, 6) of a law, MPa.
 
     Its arguments are the strains (M, 6) with engineering shears, the axes of the printing frames as
@@ -31,7 +32,7 @@ def moduli_of(law: Law) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
         inverse = frame.T @ jnp.diag(1 / stretch) @ frame
         # An isotropic law cannot tell F_e from any other root of C_e.
         F = _root(inverse @ C @ inverse)
-        return stretch.prod() * law.energy(F[:, :, None])[0]
+        return stretch.prod() * density(law, F)
 
     def both(strain: Array, frame: Array, stretch: Array) -> tuple[Array, Array]:
         point = strain, frame, stretch

@@ -1,4 +1,4 @@
-"""CalculiX on a solid: twelve frames, by one run where it has the law, by many where it has not."""
+"""CalculiX on a solid: all frames, by one run where it has the law, by many where it has not."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -9,19 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
-from simulearn.fea.calculix import grown, linearised
+from simulearn.fea.calculix import grown
 from simulearn.fea.calculix.brick import matching
 from simulearn.fea.calculix.process import Ccx, NotConvergedError, ccx
 from simulearn.fea.calculix.schedule import Step, schedule
-from simulearn.fea.calculix.state import State
+from simulearn.fea.calculix.state import StepResult
 from simulearn.fea.laws import law_of
 from simulearn.fea.solid import Solid
 from simulearn.material import ElasticData, MarlowData, Material
+from simulearn.schedule import FRAMES
 
 Progress = Callable[[int, int], None]  # (frames done, frames in all)
 Kind = Literal["marlow", "neo-hookean", "st-venant-kirchhoff"]
 
-FRAMES = 12
 PARTS = (1, 2, 4)  # steps per tenth of release, the next tried where one does not converge
 
 
@@ -30,8 +30,8 @@ class CalculixFrames:
     """What CalculiX computed.
 
     Attributes:
-        displacements: (12, N, 3) mm; frame 0 is zero.
-        stress: (12, E, Q, 6) Cauchy stress at the solid's integration points, MPa, global axes,
+        displacements: (F, N, 3) mm of the frames; frame 0 is zero.
+        stress: (F, E, Q, 6) Cauchy stress at the solid's integration points, MPa, global axes,
             order 11 22 33 12 13 23; frame 0 is zero, frame 11 that of the unmultiplied gravity.
         record: `law`, `program`, `seconds`, `iterations` of each frame, `runs` of ccx.
     """
@@ -50,7 +50,7 @@ def calculix(
     timeout: float | None = None,
     threads: int = 1,
 ) -> CalculixFrames:
-    """Return the twelve frames of a solid, computed by CalculiX.
+    """Return the frames of a solid, computed by CalculiX.
 
     Args:
         solid: the solid, with 2 x 2 x 2 integration points, and one growth, in each brick.
@@ -74,6 +74,8 @@ def calculix(
         if isinstance(data, ElasticData) and data.kind == "st-venant-kirchhoff":
             steps, states = _grown(program, solid, data, material, told)
         else:
+            from simulearn.fea.calculix import linearised  # with JAX, which nothing else needs here
+
             steps = schedule(material)
             states = linearised.solve(program, solid, law_of(data), steps, told)
     kept = [k for k, step in enumerate(steps) if step.frame is not None]
@@ -109,7 +111,7 @@ def _grown(
     data: ElasticData,
     material: Material,
     told: Callable[[Sequence[Step]], None],
-) -> tuple[list[Step], list[State]]:
+) -> tuple[list[Step], list[StepResult]]:
     """Solve in one run, with smaller steps where larger ones do not converge."""
     for parts in PARTS:
         steps = schedule(material, parts)

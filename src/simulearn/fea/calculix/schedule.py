@@ -1,9 +1,9 @@
-"""The steps of an analysis: gravity, ten of release, creep."""
+"""The steps of an analysis: gravity, release, creep."""
 
 from dataclasses import dataclass
 
-from simulearn.fea.trial import STEPS
 from simulearn.material import Material
+from simulearn.schedule import SCHEDULE
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ def schedule(material: Material, parts: int = 1) -> list[Step]:
     """
     load = material.gravity.body_force
     steps = [Step(0.0, load, None)] if load else []
-    count = STEPS * parts
+    count = SCHEDULE.steps * parts
     for k in range(1, count + 1):
         frame, rest = divmod(k, parts)
         steps.append(Step(k / count, load, None if rest else frame))
-    return [*steps, Step(1.0, load * (1 + material.creep.amplitude), STEPS + 1)]
+    return [*steps, Step(1.0, load * (1 + material.creep.amplitude), SCHEDULE.steps + 1)]

@@ -12,7 +12,7 @@ Told = Callable[[Sequence[Step]], None]  # called with the steps that are done
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class StepResult:
     """The solid at the end of a step.
 
     Attributes:

@@ -1,17 +1,22 @@
-"""CalculiX as an engine: the same trial, computed by another program."""
+"""CalculiX as an engine: the same trial, computed by another program.
+
+It follows no snap: where it does not converge, even in smaller steps, there is no trial. It does
+not say whether an equilibrium is stable either.
+"""
 
 import time
 from collections.abc import Callable
 
-import numpy as np
-
 from simulearn.fea.calculix.run import Kind, calculix
-from simulearn.fea.kernel import points_of
+from simulearn.fea.kernels import entries
+from simulearn.fea.laws import law_of
 from simulearn.fea.mesh import THREE_ACROSS, Layout, mesh
-from simulearn.fea.stress import sampled_stress
-from simulearn.fea.trial import FRAMES, STEPS, Trial
+from simulearn.fea.points import bricks_of
+from simulearn.fea.stress import sample_points, sampled_stress
+from simulearn.fea.trial import Trial
 from simulearn.grid import Grid
 from simulearn.material import Material
+from simulearn.schedule import FRAMES, SCHEDULE
 
 
 def simulate_grid(
@@ -41,11 +46,11 @@ def simulate_grid(
     solid = mesh(grid, material, layout)
     frames = calculix(solid, material, law=law, progress=progress, threads=threads)
     record = {"bricks": len(solid.bricks), **frames.record}
-    points = points_of(solid)
+    bricks, _, _ = bricks_of(solid)
+    law_, at = law_of(material.law), sample_points(solid)
     tensor = frames.stress[..., [[0, 3, 4], [3, 1, 5], [4, 5, 2]]].reshape(FRAMES, -1, 3, 3)
-    released = np.minimum(np.arange(FRAMES) / STEPS, 1.0)
-    stress = [
-        sampled_stress(solid, points, u, float(s), cauchy)
-        for u, s, cauchy in zip(frames.displacements, released, tensor, strict=True)
-    ]
+    stress = []
+    for u, s, cauchy in zip(frames.displacements, SCHEDULE.released, tensor, strict=True):
+        _, _, F, _, _ = entries.internal(law_, bricks, u, s)  # F knows no law
+        stress.append(sampled_stress(solid, s, F[at], cauchy[at]))
     return Trial.of(solid, list(frames.displacements), stress, begun, record)

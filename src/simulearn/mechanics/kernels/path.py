@@ -1,6 +1,6 @@
 """The frames of a grid by beam mechanics, each found from the ones before: the entry from Python."""
 
-from math import inf, isfinite, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -12,7 +12,11 @@ Array = Any
 FAST = {"contract"}
 ALONE = 64**3  # multiplications that one thread does
 ONE, HALF, TOP = np.float32(1.0), np.float32(0.5), np.float32(87.0)
-LOG2, LN2_HIGH, LN2_LOW = np.float32(1.442695041), np.float32(0.693359375), np.float32(-2.12194440e-4)
+LOG2, LN2_HIGH, LN2_LOW = (
+    np.float32(1.442695041),
+    np.float32(0.693359375),
+    np.float32(-2.12194440e-4),
+)
 # exp(r) - 1 - r over r2, |r| below ln 2 / 2: coefficients of Cephes' expf (S. Moshier)
 E0, E1, E2 = np.float32(1.9875691500e-4), np.float32(1.3981999507e-3), np.float32(8.3334519073e-3)
 E3, E4, E5 = np.float32(4.1665795894e-2), np.float32(1.6666665459e-1), np.float32(5.0000001201e-1)

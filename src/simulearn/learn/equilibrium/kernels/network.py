@@ -266,10 +266,14 @@ def outputs(
             for m in range(beams):
                 here, there = ends_of[end * beams + m], ends_of[(2 + end) * beams + m]
                 for k in range(count):
-                    both[k] = HALF * (here[k] + there[layers.mirror_order[k]] * layers.mirror_sign[k])
+                    both[k] = HALF * (
+                        here[k] + there[layers.mirror_order[k]] * layers.mirror_sign[k]
+                    )
                 target = out[f, end, m]
                 for k in range(count):
                     if ratio[m] < 0:
-                        target[k] = both[layers.flip_order[k]] * layers.flip_sign[k] * layers.size[k]
+                        target[k] = (
+                            both[layers.flip_order[k]] * layers.flip_sign[k] * layers.size[k]
+                        )
                     else:
                         target[k] = both[k] * layers.size[k]

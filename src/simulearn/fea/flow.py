@@ -1,0 +1,116 @@
+"""Motion through a viscous bath to the next stable equilibrium under the same load.
+
+At a limit point no equilibrium is near, and a print moves through the bath to the next one, slowly,
+for hot plastic is viscous. So the solid follows a gradient flow of its energy by backward Euler,
+K du + c M (u - u_ref) = R, with lumped nodal volumes M; c falls as steps succeed, until the solid
+stands without it. (Commercial solvers call it stabilisation.) It needs no arc length and ends in a
+stable equilibrium.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import ComputationError
+from simulearn.fea.problem import EquilibriumProblem, NotConvergedError, SolidState
+
+Array = NDArray[np.float64]
+
+# Viscosities c over modulus / thickness^2, which have the same unit (N/mm per mm3).
+BEGIN, END, MOST = 1e-4, 1e-11, 1e3
+FACTOR = 4.0  # by which c falls after a step that succeeds, and grows after one that fails
+CALM = 0.15  # of the solid's size: a step that moves it by more does not lower c
+SLOW = 0.01  # of the size: a step that moves it by less lowers c twice
+STEPS = 400  # at most
+PUSH = 1e-3  # of the solid's size, along the softest mode, from an unstable balance
+PUSHES = 3  # at most
+ALIKE = 0.01  # relative difference of two motions, up to which they are mirror images
+
+
+def flow(problem: EquilibriumProblem, start: SolidState) -> SolidState:
+    """Return the stable equilibrium to which a solid moves under the load of a state.
+
+    Args:
+        problem: the equilibrium problem.
+        start: displacements from which it moves, with the load that acts.
+
+    Raises:
+        ComputationError: the motion comes to no end.
+        CancelledError: the problem's token said so.
+    """
+    thickness = float(np.ptp(problem.solid.nodes[:, 2]))
+    unit = (problem.law.first + 2 * problem.law.shear) / thickness**2
+    state, c, pushes = start, BEGIN * unit, 0
+    for _ in range(STEPS):
+        plain = c < END * unit
+        after = _step(problem, state, 0.0 if plain else c)
+        if after is not None and plain and after.negative and pushes < PUSHES:
+            pushes += 1
+            state, c = pushed(problem, after), BEGIN * unit
+            continue
+        if after is None or after.negative:
+            # Too far at once, or not towards a minimum of the energy.
+            c *= FACTOR * (FACTOR if plain else 1)
+            if c > MOST * unit:
+                break
+            continue
+        if plain:
+            return after
+        motion = abs(after.u - state.u).max() / problem.size
+        if motion < CALM:
+            c /= FACTOR
+        if motion < SLOW:
+            c /= FACTOR
+        state = after
+    raise ComputationError(
+        f"the grid comes to no rest at {100 * start.released:.1f} % of the stress released under "
+        f"{start.gravity:.2f} times gravity",
+        code="no-equilibrium",
+        hint="a smaller grid, or shorter actuators, may have a shape",
+    )
+
+
+def _step(problem: EquilibriumProblem, state: SolidState, viscosity: float) -> SolidState | None:
+    """Return the state after a step of the flow, None where there is none."""
+    try:
+        return problem.equilibrium(state, viscosity, state.u)
+    except NotConvergedError:
+        return None
+
+
+@dataclass(frozen=True, eq=False)
+class Departure:
+    """How a solid leaves an unstable balance.
+
+    Attributes:
+        state: the stable equilibrium that it comes to.
+        mirrored: whether the opposite push leads equally far, to the mirrored shape.
+    """
+
+    state: SolidState
+    mirrored: bool
+
+
+def leave(problem: EquilibriumProblem, balance: SolidState) -> Departure:
+    """Leave an unstable balance along its softest mode.
+
+    Args:
+        problem: the equilibrium problem, its last factors those of the balance.
+        balance: an equilibrium with negative eigenvalues.
+    """
+    push = pushed(problem, balance).u - balance.u
+    state, other = (flow(problem, replace(balance, u=balance.u + x)) for x in (push, -push))
+    one, two = (np.linalg.norm(end.u - balance.u) for end in (state, other))
+    return Departure(state, bool(abs(one - two) < ALIKE * max(one, two)))
+
+
+def pushed(problem: EquilibriumProblem, balance: SolidState) -> SolidState:
+    """Return a state pushed a little along the unstable mode that grows fastest.
+
+    The first large component of the mode is positive, so that the side is always the same.
+    """
+    values, modes = problem.soft_modes(balance.negative + 1)
+    mode = modes[int(np.argmin(values))]
+    large = mode[abs(mode) > 0.5]
+    return replace(balance, u=balance.u + np.sign(large[0]) * PUSH * problem.size * mode)

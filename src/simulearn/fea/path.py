@@ -1,0 +1,153 @@
+"""The path of a solid while its stress is released: increment by increment, snaps followed.
+
+Each increment starts from a quadratic extrapolation of the last three states. One that does not
+converge is halved; where even a hundredth of the release has no equilibrium near, or one far from
+the extrapolation, the solid snaps and `flow` leads to the next equilibrium. An equilibrium that is
+not stable is left along its softest mode. So there is always an answer, and never a wrong one.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import Message
+from simulearn.fea.flow import flow, leave
+from simulearn.fea.problem import EquilibriumProblem, NotConvergedError, SolidState
+from simulearn.schedule import Snap
+
+Array = NDArray[np.float64]
+
+SHORT = 0.25  # of an increment, its first part where there is no past to extrapolate
+SNAP_STEP = 0.01  # of the release: to this a snap is located
+FAR = 0.03  # of the solid's size: an equilibrium so far from its extrapolation is another branch
+
+
+class Path:
+    """States of a solid, each reached from the ones before.
+
+    Args:
+        problem: the equilibrium problem.
+        states: to begin with; by default the flat solid.
+
+    Attributes:
+        last: up to three states on the same smooth path.
+        halved: increments that had to be halved.
+        snaps: sudden motions, in their order.
+        messages: what qualifies the states.
+    """
+
+    def __init__(self, problem: EquilibriumProblem, states: Sequence[SolidState] = ()) -> None:
+        self.problem = problem
+        self.last = list(states) or [problem.flat()]
+        self.halved = 0
+        self.snaps: list[Snap] = []
+        self.messages: list[Message] = []
+
+    def restart(self) -> None:
+        """Forget all but the last state, for what follows is no smooth continuation."""
+        self.last = self.last[-1:]
+
+    def advance(self, released: float, gravity: float, frame: int = 0) -> SolidState:
+        """Go on to a released fraction and a multiple of gravity, and return the state there.
+
+        Args:
+            released: fraction of the residual stress, 0 to 1.
+            gravity: multiple of gravity.
+            frame: number of the frame that this leads to, for messages.
+
+        Raises:
+            ComputationError: no equilibrium was reached.
+            CancelledError: the problem's token said so.
+        """
+        goal = np.array([released, gravity])
+        begin = np.array([self.last[-1].released, self.last[-1].gravity])
+        release = released != self.last[-1].released
+        least = 2.0**-self.problem.control.halvings
+        if release:
+            least = max(least, SNAP_STEP / abs(released - self.last[-1].released))
+        blind = len(self.last) == 1 and release
+        step, done = SHORT if blind else 1.0, 0.0
+        while done < 1:
+            to = min(done + step, 1.0)
+            s, g = ((1 - to) * begin + to * goal).tolist()
+            guess = extrapolated(self.last, s, g)
+            state = self._near(guess)
+            if state is None and to - done > least:
+                self.halved += 1
+                step = (to - done) / 2
+                continue
+            if state is None:
+                if not release and self.last[-1].released == 0:
+                    s, g, to = released, gravity, 1.0  # nothing is released: all the load at once
+                self._snap(s, g, frame)
+            elif state.negative:
+                self._leave(state, frame)
+            else:
+                self.last = [*self.last, state][-3:]
+            done = to
+            step = SHORT * (1 - done) if len(self.last) == 1 and release else 1.0
+        return self.last[-1]
+
+    def _near(self, guess: SolidState) -> SolidState | None:
+        """Return the equilibrium near an extrapolation, None where there is none."""
+        try:
+            state = self.problem.equilibrium(guess)
+        except NotConvergedError:
+            return None
+        if len(self.last) > 2 and abs(state.u - guess.u).max() > FAR * self.problem.size:
+            return None  # another branch
+        return state
+
+    def _snap(self, s: float, g: float, frame: int) -> None:
+        """Follow the flow from the last state to the equilibrium under another load."""
+        before = self.last[-1]
+        state = flow(self.problem, SolidState(s, g, before.u, before.carried))
+        self.last = [state]
+        motion = float(np.linalg.norm(state.u - before.u, axis=1).max())
+        if before.released == s == 0:
+            self._say(
+                "hangs",
+                f"the grid is so slender that it hangs down by up to {motion:.0f} mm under its own "
+                "weight before any stress is released",
+            )
+        elif motion > FAR * self.problem.size:
+            self.snaps.append(Snap(before.released, frame))
+            self._say(
+                "snap",
+                f"the grid snaps at {100 * before.released:.1f} % of the stress released (frame "
+                f"{frame}): some part of it moves by {motion:.0f} mm at once",
+            )
+
+    def _leave(self, balance: SolidState, frame: int) -> None:
+        """Leave an unstable balance."""
+        departure = leave(self.problem, balance)
+        self.last = [departure.state]
+        other = (
+            "the opposite side is as likely, and leads to the mirrored shape"
+            if departure.mirrored
+            else "the opposite side leads to another shape"
+        )
+        self._say(
+            "unstable-balance",
+            f"at {100 * balance.released:.0f} % of the stress released (frame {frame}) the grid "
+            f"stood on an unstable balance; it was left along its softest mode, {other}",
+        )
+
+    def _say(self, code: str, text: str) -> None:
+        self.messages.append(Message(code, "grid", text))
+
+
+def extrapolated(last: Sequence[SolidState], s: float, g: float) -> SolidState:
+    """Return displacements and carried stress through up to three states (Lagrange)."""
+    at, goal = [state.released + state.gravity for state in last], s + g
+    weights = [
+        float(np.prod([(goal - b) / (a - b) for j, b in enumerate(at) if j != i]))
+        for i, a in enumerate(at)
+    ]
+    u = np.zeros_like(last[0].u)
+    carried = np.zeros_like(last[0].carried)
+    for weight, state in zip(weights, last, strict=True):
+        u += weight * state.u
+        carried += weight * state.carried
+    return SolidState(s, g, u, carried)
