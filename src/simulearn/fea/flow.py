@@ -23,6 +23,9 @@ FACTOR = 4.0  # by which c falls after a step that succeeds, and grows after one
 CALM = 0.15  # of the solid's size: a step that moves it by more does not lower c
 SLOW = 0.01  # of the size: a step that moves it by less lowers c twice
 STEPS = 400  # at most
+STILL = 1e-4  # of the size: a step that moves it by less leads nowhere
+ITERATIONS = 8  # at most, in one step
+WAIT = 3  # steps after a failed one, before c falls again
 PUSH = 1e-3  # of the solid's size, along the softest mode, from an unstable balance
 PUSHES = 3  # at most
 ALIKE = 0.01  # relative difference of two motions, up to which they are mirror images
@@ -41,7 +44,7 @@ def flow(problem: EquilibriumProblem, start: SolidState) -> SolidState:
     """
     thickness = float(np.ptp(problem.solid.nodes[:, 2]))
     unit = (problem.law.first + 2 * problem.law.shear) / thickness**2
-    state, c, pushes = start, BEGIN * unit, 0
+    state, c, pushes, wait = start, BEGIN * unit, 0, 0
     for _ in range(STEPS):
         plain = c < END * unit
         after = _step(problem, state, 0.0 if plain else c)
@@ -52,16 +55,17 @@ def flow(problem: EquilibriumProblem, start: SolidState) -> SolidState:
         if after is None or after.negative:
             # Too far at once, or not towards a minimum of the energy.
             c *= FACTOR * (FACTOR if plain else 1)
+            wait = WAIT
             if c > MOST * unit:
                 break
             continue
         if plain:
             return after
         motion = abs(after.u - state.u).max() / problem.size
-        if motion < CALM:
-            c /= FACTOR
-        if motion < SLOW:
-            c /= FACTOR
+        if wait and motion > STILL:
+            wait -= 1
+        elif motion < CALM:
+            c /= FACTOR * (FACTOR if motion < SLOW else 1)
         state = after
     raise ComputationError(
         f"the grid comes to no rest at {100 * start.released:.1f} % of the stress released under "
@@ -74,7 +78,7 @@ def flow(problem: EquilibriumProblem, start: SolidState) -> SolidState:
 def _step(problem: EquilibriumProblem, state: SolidState, viscosity: float) -> SolidState | None:
     """Return the state after a step of the flow, None where there is none."""
     try:
-        return problem.equilibrium(state, viscosity, state.u)
+        return problem.equilibrium(state, viscosity, state.u, ITERATIONS)
     except NotConvergedError:
         return None
 
