@@ -1,8 +1,8 @@
 """Energy densities of the constitutive laws, for automatic differentiation.
 
-Call it in double precision (`compiled.double_precision`). The solver has stress and moduli in closed
-form (`fea.kernels.law`). What is derived from these energies is independent of them: the tests
-compare both, and CalculiX is given only what is here.
+Call it in double precision (`compiled.double_precision`). The solver has stress and moduli in
+closed form (`fea.kernels.law`). What is derived from these energies is independent of them: the
+tests compare both, and CalculiX is given only what is here.
 """
 
 import jax
