@@ -1,12 +1,15 @@
 """Reading and writing files so that a reader never meets half of one, and what the machine has.
 
 A file is written beside its final place under a temporary name and then renamed, which the
-operating system does in one step: whoever opens the final name sees the old file or the new one.
+operating system does in one step: a reader of the final name gets the old file or the new one.
 """
 
+import errno
+import io
 import os
+import re
+import secrets
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +17,12 @@ from pathlib import Path
 import platformdirs
 
 from simulearn.errors import InputError
+
+# A file of more bytes is not read unless its reader allows it.
+MOST_BYTES = 2**30
+MOST_TRIES = 100
+# The numbers of errors of a disk or folder that takes no more.
+NO_ROOM = {errno.ENOSPC, errno.EFBIG, errno.EROFS, errno.EIO, getattr(errno, "EDQUOT", errno.EIO)}
 
 
 def cache_folder() -> Path | None:
@@ -38,43 +47,94 @@ def cores() -> int:
 def replacing(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path beside `path`; on leaving without an error it becomes `path`.
 
+    The contents are on the disk before the file has its final name. Where `path` is a symbolic
+    link, the file that it names is replaced and the link stays.
+
     Raises:
-        InputError: the folder does not exist or cannot be written.
+        InputError: the folder does not exist or takes no file, or the disk is full.
     """
-    path = Path(path)
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; name a file")
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: the folder {path.parent} does not exist")
+    final = _final(Path(path))
     try:
-        # The ending stays, since writers choose their format by it.
-        handle, name = tempfile.mkstemp(prefix=".", suffix=path.suffix, dir=path.parent)
-        os.close(handle)
+        temporary = _created(final)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
-    temporary = Path(name)
     try:
         yield temporary
-        # mkstemp makes files private; a result is as readable as any other file.
-        umask = os.umask(0)
-        os.umask(umask)
-        temporary.chmod(0o666 & ~umask)
-        temporary.replace(path)
+        handle = os.open(temporary, os.O_RDWR)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+        temporary.replace(final)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+        if (reason := _of_writing(error, temporary)) is None:
+            raise
+        raise InputError(f"{path}: cannot be written ({reason})") from error
     finally:
         temporary.unlink(missing_ok=True)
 
 
-def read_text(path: Path | str) -> str:
-    """Return the text of a file, or say in one line why it cannot be read.
+def _final(path: Path) -> Path:
+    """Return the path of the file itself, or raise InputError where no file can be."""
+    try:
+        final = Path(os.path.realpath(path))
+        folder, there, file = final.is_dir(), final.exists(), final.is_file()
+        parent, beside = final.parent.is_dir(), final.parent.exists()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+    except ValueError as error:
+        raise InputError(f"{str(path)!r}: is not the name of a file ({error})") from error
+    if folder:
+        raise InputError(f"{path}: is a folder; name a file")
+    if not parent:
+        why = "is not a folder" if beside else "does not exist"
+        raise InputError(f"{path}: the folder {path.parent} {why}")
+    if there and not file:
+        raise InputError(f"{path}: is a device or a pipe; name a file")
+    return final
+
+
+def _created(final: Path) -> Path:
+    """Create an empty file beside another one, with the access that new files have here."""
+    for _ in range(MOST_TRIES):
+        # The ending stays, since writers choose their format by it.
+        temporary = final.with_name(f".{secrets.token_hex(8)}{final.suffix}")
+        try:
+            os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o666))
+        except FileExistsError:
+            continue
+        return temporary
+    raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
+
+
+def _of_writing(error: OSError, temporary: Path) -> str | None:
+    """Return why a file could not be written, or None if an error has another cause."""
+    number = error.errno
+    if number is None and (match := re.search(r"errno = (\d+)", str(error))):
+        number = int(match[1])  # HDF5 writes it into its message
+    names = {str(name) for name in (error.filename, error.filename2) if name is not None}
+    if number in NO_ROOM or str(temporary) in names:
+        return error.strerror or os.strerror(number or errno.EIO)
+    return None
+
+
+def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
+    """Return the text of a file, or raise InputError with the reason.
+
+    Args:
+        path: of the file.
+        most: the number of bytes that it may have.
 
     Raises:
-        InputError: the file is missing, a folder, unreadable, or not UTF-8 text.
+        InputError: the file is missing, a folder, unreadable, too large, or not UTF-8 text.
     """
     path = Path(path)
     try:
-        return path.read_text(encoding="utf-8")
+        with path.open("rb") as file:
+            data = file.read(most + 1)
+        if len(data) > most:
+            raise InputError(f"{path}: is too large; at most {most / 2**20:g} MiB can be read")
+        return io.TextIOWrapper(io.BytesIO(data), encoding="utf-8").read()
     except FileNotFoundError as error:
         raise InputError(f"{path}: there is no such file") from error
     except UnicodeDecodeError as error:

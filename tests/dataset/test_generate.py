@@ -14,7 +14,7 @@ from running import command
 
 from simulearn.dataset import Config, cluster_workers, generate, local_workers, pack
 from simulearn.dataset.generate import Folder
-from simulearn.dataset.trial import Answer, Job, read_trial, run
+from simulearn.dataset.trial import TrialJob, TrialOutcome, read_trial, run
 from simulearn.errors import ComputationError, InputError
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="sends signals as Linux has them")
@@ -126,10 +126,10 @@ def test_failures_are_recorded_and_do_not_stop_the_run(small: Config, tmp_path):
     assert tally.done
     assert tally.failed
     assert all("no equilibrium beyond" in reason for reason in tally.reasons)
-    told = [json.loads(f.read_text()) for f in (tmp_path / "set" / "failures").iterdir()]
-    assert {f"trial {f['trial']}: {f['reason']}" for f in told} == set(tally.reasons)
+    records = [json.loads(f.read_text()) for f in (tmp_path / "set" / "failures").iterdir()]
+    assert {f"trial {f['trial']}: {f['reason']}" for f in records} == set(tally.reasons)
     again = generate(hasty, tmp_path / "set", local_workers(2))
-    assert (again.kept, again.done, again.failed) == (12, 0, tally.failed)
+    assert (again.present, again.done, again.failed) == (12, 0, tally.failed)
 
 
 def test_a_hanging_trial_is_given_up(small: Config, tmp_path):
@@ -170,21 +170,21 @@ def test_no_scheduler_is_told_in_a_line(small, tmp_path):
 
 def test_the_key_depends_on_all_that_the_answer_depends_on(small: Config):
     def key(config: Config, k: int = 0) -> str:
-        return Job.of(config.design(k)[0], config).key
+        return TrialJob.of(config.design(k)[0], config).key
 
     finer = small.model_copy(update={"solver": small.solver.model_copy(update={"layers": 2})})
     more = small.model_copy(update={"trials": 99, "test_every": 0, "name": "other"})
     assert key(small) == key(more)
     assert len({key(small), key(small, 1), key(finer)}) == 3
-    job = Job.of(small.design(0)[0], small)
+    job = TrialJob.of(small.design(0)[0], small)
     heavier = json.loads(json.dumps(job.material))
     heavier["gravity"]["density"] = 1.0
-    assert Job(job.grid, heavier, job.solver).key != job.key
+    assert TrialJob(job.grid, heavier, job.solver).key != job.key
 
 
 def test_a_broken_answer_is_an_answer(small: Config):
-    job = Job.of(small.design(0)[0], small)
-    answer = run(Job(job.grid, {}, job.solver))
+    job = TrialJob.of(small.design(0)[0], small)
+    answer = run(TrialJob(job.grid, {}, job.solver))
     assert answer.outcome == "broken"
     assert "ValidationError" in answer.reason
 
@@ -208,13 +208,13 @@ def test_no_room_for_an_answer_is_told_with_what_is_kept(small, tmp_path, monkey
         raise InputError("x.npz: cannot be written (No space left on device)")
 
     monkeypatch.setattr(Folder, "keep", full)
-    with pytest.raises(ComputationError, match=r"No space left on device.*0 trials are kept"):
+    with pytest.raises(ComputationError, match=r"No space left on device.*0 trials are there"):
         generate(small, tmp_path / "set", local_workers(1))
 
 
 def test_answers_travel(small: Config):
     import pickle
 
-    job = Job.of(small.design(0)[0], small)
+    job = TrialJob.of(small.design(0)[0], small)
     assert pickle.loads(pickle.dumps(job)) == job
-    assert pickle.loads(pickle.dumps(Answer("failed", reason="so"))).reason == "so"
+    assert pickle.loads(pickle.dumps(TrialOutcome("failed", reason="so"))).reason == "so"

@@ -9,7 +9,7 @@ import pytest
 from simulearn.dataset import checksum, pack, read_dataset
 from simulearn.dataset.pack import _Writer
 from simulearn.dataset.packed import _positions
-from simulearn.dataset.trial import Job, read_trial
+from simulearn.dataset.trial import TrialJob, read_trial
 from simulearn.errors import InputError
 
 
@@ -28,7 +28,7 @@ def test_it_holds_the_trials_to_half_a_step(file, folder, small):
     assert batch.stress is not None
     for t, k in enumerate(batch.numbers):
         grid, _ = small.design(int(k))
-        trial = read_trial(folder / "trials" / f"{Job.of(grid, small).key}.npz")
+        trial = read_trial(folder / "trials" / f"{TrialJob.of(grid, small).key}.npz")
         assert abs(trial.joints - batch.joints[t]).max() < 0.00251
         assert abs(trial.beams - batch.sections[t]).max() < 0.00251
         assert abs(trial.stress - batch.stress[t]).max() < 0.51e-5

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
 from simulearn.errors import InputError
 from simulearn.fabricate import load_printer, prepare
-from simulearn.fabricate.bed import EDGE, GAP, place
+from simulearn.fabricate.bed import EDGE, GAP, _packed, place
 from simulearn.grid import Grid, make, outline
 from simulearn.material import load_material, material
 
@@ -53,6 +55,30 @@ def test_two_that_fit_only_when_turned_are_turned():
     grids = [make("flat", (1, 3), 55.0)] * 3  # 62 x 172
     placed = boxes(place(grids, SECTION, load_printer("prusa-mk4")))
     assert len(placed) == 3
+
+
+@given(st.lists(st.tuples(st.floats(30.0, 120.0), st.floats(30.0, 120.0)), min_size=1, max_size=7))
+def test_boxes_lie_in_the_room_and_apart(sizes):
+    sizes, room = np.array(sizes), np.array([248.0, 208.0])
+    packed = _packed(sizes, room)
+    if packed is None:
+        assert len(sizes) > 1
+        return
+    corners, turned = packed
+    sizes = np.where(turned[:, None], sizes[:, ::-1], sizes)
+    assert (corners >= 0).all()
+    assert (corners + sizes <= room + 1e-6).all()
+    for k, (corner, size) in enumerate(zip(corners, sizes, strict=True)):
+        beside = np.maximum(corner - corners - sizes, corners - corner - size).max(axis=1)
+        assert (np.delete(beside, k) >= GAP - 1e-6).all()
+
+
+def test_grids_that_rows_do_not_take_fit():
+    # Beside the tall one two low ones lie one above the other.
+    sizes = np.array([[100.0, 200.0], [130.0, 90.0], [130.0, 95.0]])
+    corners, turned = _packed(sizes, np.array([248.0, 208.0]))
+    assert not turned.any()
+    assert len(set(corners[:, 1])) == 2
 
 
 def test_what_does_not_fit_is_refused_with_its_size():

@@ -46,15 +46,52 @@ def test_the_material_may_be_left_out():
     assert grid_from_dict(data).material == "pla-hot-water"
 
 
-@pytest.mark.parametrize("x", [np.nan, np.inf])
-def test_what_could_not_be_read_is_not_written(tmp_path, x):
+def test_what_could_not_be_read_is_not_written(tmp_path):
     path = tmp_path / "grid.json"
     path.write_text("before")
     grid = make("flat")
-    with pytest.raises(InputError, match=r"joints\[0\]\[0\] is"):
-        write_grid(moved(grid, joints=np.full_like(grid.joints, x)), path)
+    with pytest.raises(InputError, match=r"joints\[0\] is .*; coordinates lie within"):
+        write_grid(moved(grid, joints=np.full_like(grid.joints, 1e9)), path)
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
+
+
+# Sources that are not trusted
+
+PATHS = ["mine.toml", "/etc/x.toml", "C:mine.TOML", "a/b", "..\\b", "\\\\host\\share\\m.toml"]
+
+
+@pytest.mark.parametrize("material", PATHS)
+def test_a_material_is_a_path_only_for_who_allows_it(tmp_path, material):
+    data = {**GOOD, "material": material}
+    with pytest.raises(InputError, match="material is a path; ") as refused:
+        grid_from_dict(data)
+    assert (refused.value.code, refused.value.where) == ("material-path", "material")
+    assert grid_from_dict(data, paths=True).material == material
+    path = tmp_path / "grid.json"
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match=r"grid\.json: material is a path; "):
+        read_grid(path)
+    assert read_grid(path, paths=True).material == material
+
+
+def test_a_file_that_is_too_large_is_not_read(tmp_path):
+    path = tmp_path / "grid.json"
+    path.write_text(json.dumps(GOOD) + " " * 2**24)
+    with pytest.raises(InputError, match="is too large; at most 16 MiB can be read"):
+        read_grid(path)
+
+
+def test_a_grid_of_too_many_joints_is_refused_in_one_line():
+    assert refused({**GOOD, "joints": [[0.0, 0.0]] * 20_001}) == (
+        "the grid has 20001 joints; at most 20000 can be computed"
+    )
+
+
+def test_an_error_has_its_code_and_place():
+    with pytest.raises(InputError) as error:
+        grid_from_dict({**GOOD, "fixed": 9})
+    assert (error.value.code, error.value.where) == ("fixed-index", "grid")
 
 
 # One clear line
@@ -88,6 +125,12 @@ def test_what_could_not_be_read_is_not_written(tmp_path, x):
 )
 def test_a_wrong_value_is_named_with_its_place(key, value, line):
     assert refused({**GOOD, key: value}).startswith(line)
+
+
+def test_a_point_in_space_is_refused_with_what_to_do():
+    assert refused({**GOOD, "joints": [[0, 0], [1, 0, 2.5]]}) == (
+        "joints[1] is [1, 0, 2.5]; joints are a list of [x, y], finite numbers in mm; drop z"
+    )
 
 
 @pytest.mark.parametrize("key", ["schema", "joints", "beams", "actuators", "fixed"])

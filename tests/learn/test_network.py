@@ -9,7 +9,7 @@ from conformance import gradient_is_that_of_finite_differences
 from simulearn.dataset.features import edge_features, end_modes, node_features, one_hot
 from simulearn.learn.common.first_frame import first_frame
 from simulearn.learn.paper.graph import graph_of, meetings
-from simulearn.learn.paper.model import whole
+from simulearn.learn.paper.model import frames_after
 from simulearn.learn.paper.normaliser import fit, placed
 from simulearn.learn.paper.normalisers import normalisers
 from simulearn.learn.paper.state import features, state_of
@@ -175,7 +175,7 @@ def test_the_gradient_of_a_rollout_is_that_of_finite_differences(model, designs)
 
     @jax.jit
     def height(corners):
-        frames, crept = whole(double, state._replace(sections=corners), ratio, shape, meet)
+        frames, crept = frames_after(double, state._replace(sections=corners), ratio, shape, meet)
         return (crept.joints[..., 2::3] ** 2).mean() + (frames.stress**2).mean()
 
     gradient_is_that_of_finite_differences(height, state.sections)

@@ -31,7 +31,7 @@ def grid_of(name: str) -> Grid:
     if name in library() and not Path(name).exists():
         return make(name)
     try:
-        return read_grid(name)
+        return read_grid(name, paths=True)
     except InputError as error:
         if isinstance(error.__cause__, FileNotFoundError) and not Path(name).suffix:
             raise InputError(f"{name}: is neither a file nor a grid of the library") from error

@@ -81,8 +81,9 @@ def generate(
         return
     for reason in tally.reasons[:10]:
         err.print(f"[yellow]failed:[/] {escape(reason)}")
+    trials = tally.present + tally.done + len(tally.reasons) - tally.failed
     out.print(
-        f"{escape(str(output))}: {tally.kept + tally.done + len(tally.reasons) - tally.failed:,} "
+        f"{escape(str(output))}: {trials:,} "
         f"trials, {tally.failed} failed ({tally.done:,} new, {tally.per_minute:.0f} a minute)"
     )
 
@@ -179,7 +180,7 @@ def _quantities(figures: dict[str, dict[str, Any]]) -> Table:
 def _plain(tally: "Tally") -> dict[str, Any]:
     return {
         "trials": tally.trials,
-        "kept": tally.kept,
+        "kept": tally.present,
         "new": tally.done,
         "failed": tally.failed,
         "reasons": tally.reasons,

@@ -63,7 +63,7 @@ def optimize(
     from simulearn.inverse import read_task
     from simulearn.inverse.keeping import identity, read_steps, write_steps
 
-    asked = read_task(task)
+    asked = read_task(task, paths=True)
     limits = {"seconds": seconds, "iterations": iterations, "corrections": corrections}
     named = {"method": method, "engine": engine}
     asked = asked.model_copy(
@@ -147,7 +147,7 @@ def rank(
     for path in files:
         if path.suffix.lower() not in (".png", ".pdf", ".svg", ".json"):
             raise InputError(f"{path}: the ending is not one of .png .pdf .svg .json")
-    task = read_task(design) if _is_task(design) else None
+    task = read_task(design, paths=True) if _is_task(design) else None
     name = engine or (task.engine if task else "learned")
     answering = engine_of(name, model)
     found = rank(task, answering) if task else explore(grid_of(design), answering)

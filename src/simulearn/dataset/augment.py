@@ -1,4 +1,4 @@
-"""Trials turned about z and mirrored: the same physics, seen from elsewhere.
+"""Trials turned about z and mirrored: the same physics in other axes.
 
 Turned corners are numbered anew by the convention of `Result`: those of a joint counter-clockwise
 from the smallest angle of the flat grid, those of a beam right and left of its direction.

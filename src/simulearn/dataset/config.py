@@ -107,7 +107,7 @@ def read_config(name: Path | str) -> Config:
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{path}: is not valid TOML: {error}") from error
     config = config_of(data, str(path))
-    config.material  # noqa: B018  (an unknown material is told now rather than in the run)
+    config.material  # noqa: B018  (an unknown material is refused now and not in the run)
     return config
 
 

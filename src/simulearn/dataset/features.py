@@ -98,10 +98,10 @@ def touching(modes: Indices) -> Indices:
 def adjacency(batch: Batch) -> Indices:
     """Return the adjacency matrices: (T, B, J), a mode of 1 to 16, or 0 for no connection."""
     trials, beams = batch.actuators.shape
-    whole = np.zeros((trials, beams, batch.flat.shape[1]), np.int64)
+    modes = np.zeros((trials, beams, batch.flat.shape[1]), np.int64)
     trial, beam = np.arange(trials)[:, None, None], np.arange(beams)[None, :, None]
-    whole[trial, beam, batch.beams[None]] = end_modes(batch)
-    return whole
+    modes[trial, beam, batch.beams[None]] = end_modes(batch)
+    return modes
 
 
 def one_hot(modes: Indices) -> NDArray[np.float32]:

@@ -6,7 +6,6 @@ FOLDER/failures/KEY.json   a design that has no result, and why
 """
 
 import json
-import os
 import time
 from collections.abc import Callable, Collection, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -15,14 +14,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from simulearn.dataset.config import Config, config_of
-from simulearn.dataset.trial import Answer, Job
+from simulearn.dataset.trial import TrialJob, TrialOutcome
 from simulearn.dataset.workers import Workers, local_workers
 from simulearn.errors import ComputationError, InputError
-from simulearn.files import read_text, replacing
+from simulearn.files import cores, read_text, replacing
 
 AHEAD = 2  # jobs given to each worker, so that none waits for its next
 TRIES = 3  # of a trial whose worker dies
-DIED = Answer("broken", reason=f"its worker died, {TRIES} times")
+DIED = TrialOutcome("broken", reason=f"its worker died, {TRIES} times")
 
 
 @dataclass
@@ -31,7 +30,7 @@ class Tally:
 
     Attributes:
         trials: designs in the set.
-        kept: trials and failures that were there before this run.
+        present: trials and failures that were there before this run.
         done: trials of this run.
         failed: failures in the folder, of this run or before.
         seconds: the solver's time in the trials of this run.
@@ -39,7 +38,7 @@ class Tally:
     """
 
     trials: int
-    kept: int = 0
+    present: int = 0
     done: int = 0
     failed: int = 0
     seconds: float = 0.0
@@ -55,7 +54,7 @@ class Tally:
     @property
     def left(self) -> int:
         """Designs that this run has not come to yet, or is computing."""
-        return self.trials - self.kept - self.done - len(self.reasons)
+        return self.trials - self.present - self.done - len(self.reasons)
 
 
 class Folder:
@@ -102,20 +101,20 @@ class Folder:
         """Return whether a design needs no more work."""
         return self.trial(key).exists() or self.failure(key).exists()
 
-    def keep(self, k: int, job: Job, answer: Answer) -> None:
+    def keep(self, k: int, job: TrialJob, answer: TrialOutcome) -> None:
         """Keep an answer."""
         if answer.outcome == "done":
             with replacing(self.trial(job.key)) as temporary:
                 temporary.write_bytes(answer.content)
             return
-        told = {
+        record = {
             "trial": k,
             "outcome": answer.outcome,
             "reason": answer.reason,
             "grid": job.grid,
         }
         with replacing(self.failure(job.key)) as temporary:
-            temporary.write_text(json.dumps(told, indent=1) + "\n", "utf-8")
+            temporary.write_text(json.dumps(record, indent=1) + "\n", "utf-8")
 
     def forget_failures(self, outcomes: Collection[str] = ("failed", "broken")) -> None:
         """Forget failures of some outcomes, so that they are tried again."""
@@ -164,10 +163,10 @@ def generate(
     if first is None:
         progress(tally)
         return tally
-    with workers or local_workers(os.cpu_count() or 1) as team:
+    with workers or local_workers(cores()) as team:
         progress(tally)
-        running: dict[Future[Answer], tuple[int, Job, int]] = {}
-        upcoming: tuple[int, Job] | None = first
+        running: dict[Future[TrialOutcome], tuple[int, TrialJob, int]] = {}
+        upcoming: tuple[int, TrialJob] | None = first
         while upcoming or running:
             while upcoming and len(running) < AHEAD * max(team.count(), 1):
                 running[team.submit(upcoming[1])] = (*upcoming, 1)
@@ -183,33 +182,33 @@ def generate(
     return tally
 
 
-def _missing(folder: Folder, tally: Tally) -> Iterator[tuple[int, Job]]:
+def _missing(folder: Folder, tally: Tally) -> Iterator[tuple[int, TrialJob]]:
     """Yield the designs that have no trial yet, and count those that have."""
     for k in range(folder.config.trials):
-        job = Job.of(folder.config.design(k)[0], folder.config)
+        job = TrialJob.of(folder.config.design(k)[0], folder.config)
         if folder.has(job.key):
-            tally.kept += 1
+            tally.present += 1
             tally.failed += folder.failure(job.key).exists()
         else:
             yield k, job
 
 
-def _answer(future: "Future[Answer]") -> Answer | None:
+def _answer(future: "Future[TrialOutcome]") -> TrialOutcome | None:
     """Return the answer; None if the worker died."""
     try:
         return future.result()
     except TimeoutError:
-        return Answer("broken", reason="took too long and was given up")
+        return TrialOutcome("broken", reason="took too long and was given up")
     except Exception:
         return None
 
 
-def _take(folder: Folder, tally: Tally, k: int, job: Job, answer: Answer) -> None:
+def _take(folder: Folder, tally: Tally, k: int, job: TrialJob, answer: TrialOutcome) -> None:
     try:
         folder.keep(k, job, answer)
     except InputError as error:
         raise ComputationError(
-            f"{error}; {tally.kept + tally.done} trials are kept, and the same command goes on"
+            f"{error}; {tally.present + tally.done} trials are there, and the same command goes on"
         ) from error
     if answer.outcome == "done":
         tally.done += 1

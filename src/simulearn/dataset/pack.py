@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from simulearn.dataset.config import Config
 from simulearn.dataset.generate import Folder
 from simulearn.dataset.packed import SCHEMA, digest
-from simulearn.dataset.trial import SOLVER_VERSION, Job, StoredTrial, read_trial
+from simulearn.dataset.trial import SOLVER_VERSION, StoredTrial, TrialJob, read_trial
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid
@@ -75,7 +75,7 @@ def pack(
         progress(k, config.trials)
         grid, redrawn = config.design(k)
         redraws += redrawn
-        key = Job.of(grid, config).key
+        key = TrialJob.of(grid, config).key
         if source.trial(key).exists():
             member = _Member(k, grid, read_trial(source.trial(key)))
             groups[len(grid.joints), grid.fixed, tuple(grid.beams.ravel().tolist())].append(member)
@@ -86,7 +86,7 @@ def pack(
     if missing and not partial:
         raise InputError(
             f"{folder}: {missing} of {config.trials} trials are not there yet; generate them "
-            "first, or take what is there with --partial"
+            "first, or pack only what is there"
         )
     if not groups:
         raise InputError(f"{folder}: holds no trial yet")

@@ -191,14 +191,14 @@ def _batch(group: h5py.Group, material: Material, split: Split | None, stress: b
 def _positions(group: h5py.Group, name: str, which: NDArray[np.int64]) -> Array:
     first, steps = group[f"{name}_first"], group[f"{name}_increments"]
     size = float(first.attrs["step"])
-    whole = np.empty((len(which), steps.shape[1] + 1, *first.shape[1:]), np.float32)
+    positions = np.empty((len(which), steps.shape[1] + 1, *first.shape[1:]), np.float32)
     at = first[...][which]
-    whole[:, 0] = at * size
+    positions[:, 0] = at * size
     moves = steps[...][which]
     for frame in range(moves.shape[1]):
         at += moves[:, frame]
-        np.multiply(at, size, out=whole[:, frame + 1], casting="same_kind")
-    return whole
+        np.multiply(at, size, out=positions[:, frame + 1], casting="same_kind")
+    return positions
 
 
 def _stress(values: h5py.Dataset, which: NDArray[np.int64]) -> Array:

@@ -88,8 +88,8 @@ def net_lengths(batch: Batch) -> NDArray[np.float64]:
 
 def motions(batch: Batch, since: int = 0) -> NDArray[np.float64]:
     """Return how far the joints' corners move from a frame to the last: mean, (T,), mm."""
-    way = batch.joints[:, -1] - batch.joints[:, since]
-    return np.linalg.norm(way, axis=-1).mean(axis=(1, 2)).astype(np.float64)
+    motion = batch.joints[:, -1] - batch.joints[:, since]
+    return np.linalg.norm(motion, axis=-1).mean(axis=(1, 2)).astype(np.float64)
 
 
 def summary(data: Dataset) -> dict[str, Any]:

@@ -1,6 +1,6 @@
-"""One trial of a data set: what is asked, the key it is kept under, and the file it is kept in.
+"""One trial of a data set: the job of computing it, its key, and its file.
 
-The key is a hash of everything that the answer depends on: design, material, solver settings and
+The key is a hash of everything that the outcome depends on: design, material, solver settings and
 the version of the solver. The file holds arrays of single precision (a hundred millimetres to
 less than 1e-5 mm).
 """
@@ -28,8 +28,8 @@ Array = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
-class Job:
-    """What a worker is asked, in plain data that travels to other machines.
+class TrialJob:
+    """What a worker computes, in plain data that travels to other machines.
 
     Attributes:
         grid: the design, as in a grid file.
@@ -42,7 +42,7 @@ class Job:
     solver: dict[str, Any]
 
     @classmethod
-    def of(cls, grid: Grid, config: Config) -> "Job":
+    def of(cls, grid: Grid, config: Config) -> "TrialJob":
         """Return the job of a design."""
         return cls(
             grid_to_dict(grid),
@@ -52,15 +52,15 @@ class Job:
 
     @property
     def key(self) -> str:
-        """The name under which the answer is kept."""
-        asked = {"version": SOLVER_VERSION, **asdict(self)}
-        text = json.dumps(asked, sort_keys=True, separators=(",", ":"))
+        """The name under which the outcome is kept."""
+        contents = {"version": SOLVER_VERSION, **asdict(self)}
+        text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What a worker answers.
+class TrialOutcome:
+    """The outcome of a job.
 
     Attributes:
         outcome: "done", or why there is no result: "failed" (the solver finds none, and would
@@ -88,21 +88,21 @@ class StoredTrial:
     seconds: float
 
 
-def run(job: Job) -> Answer:
-    """Simulate a design; whatever goes wrong is an answer, too."""
+def run(job: TrialJob) -> TrialOutcome:
+    """Simulate a design; whatever goes wrong is an outcome, too."""
     from simulearn.fea import simulate_grid
 
     try:
-        grid, solver = grid_from_dict(job.grid), Solver.model_validate(job.solver)
+        grid, solver = grid_from_dict(job.grid, paths=True), Solver.model_validate(job.solver)
         material = Material.model_validate(job.material)
         trial = simulate_grid(grid, material, solver.layout, solver.control)
     except (ComputationError, InputError) as error:
-        return Answer("failed", reason=str(error))
+        return TrialOutcome("failed", reason=str(error))
     except Exception as error:
-        return Answer("broken", reason=f"{type(error).__name__}: {error}")
+        return TrialOutcome("broken", reason=f"{type(error).__name__}: {error}")
     arrays = {name: getattr(trial, name) for name in ("joints", "beams", "stress")}
     if not all(np.isfinite(array).all() for array in arrays.values()):
-        return Answer("failed", reason="the result is not finite")
+        return TrialOutcome("failed", reason="the result is not finite")
     buffer = io.BytesIO()
     np.savez_compressed(
         buffer,
@@ -111,7 +111,7 @@ def run(job: Job) -> Answer:
         seconds=trial.seconds,
         **{name: array.astype(np.float32) for name, array in arrays.items()},
     )
-    return Answer("done", buffer.getvalue(), seconds=trial.seconds)
+    return TrialOutcome("done", buffer.getvalue(), seconds=trial.seconds)
 
 
 def read_trial(path: Path) -> StoredTrial:
@@ -124,7 +124,7 @@ def read_trial(path: Path) -> StoredTrial:
         # Opened here, since NumPy leaves a broken file open.
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             return StoredTrial(
-                grid_from_dict(json.loads(file["grid"].item())),
+                grid_from_dict(json.loads(file["grid"].item()), paths=True),
                 file["joints"],
                 file["beams"],
                 file["stress"],

@@ -7,22 +7,15 @@ and never write files, so a cluster needs no common disk.
 import os
 import signal
 import threading
-import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 
-from simulearn.dataset.trial import Answer, Job, run
+from simulearn.dataset.trial import TrialJob, TrialOutcome, run
 from simulearn.errors import InputError
 
-# Matrices of a trial are small; threads of several workers would only wait for each other.
-ONE_THREAD = {
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
-}
 LONGEST = 900.0  # s; a trial takes seconds, and a minute where kernels are compiled
 
 
@@ -35,7 +28,7 @@ class Workers:
         count: how many there are now.
     """
 
-    submit: Callable[[Job], "Future[Answer]"]
+    submit: Callable[[TrialJob], "Future[TrialOutcome]"]
     count: Callable[[], int]
 
 
@@ -44,17 +37,14 @@ def local_workers(processes: int, longest: float = LONGEST) -> Iterator[Workers]
     """Yield processes of this machine; a trial that takes too long (s) is given up."""
     from pebble import ProcessPool
 
-    with _one_thread():
-        pool = ProcessPool(
-            processes, initializer=_begin, initargs=(os.getpid(),), context=get_context("spawn")
+    pool = ProcessPool(processes, initializer=_begin, context=get_context("spawn"))
+    try:
+        yield Workers(
+            lambda job: pool.schedule(run, args=(job,), timeout=longest), lambda: processes
         )
-        try:
-            yield Workers(
-                lambda job: pool.schedule(run, args=(job,), timeout=longest), lambda: processes
-            )
-        finally:
-            pool.stop()
-            pool.join()
+    finally:
+        pool.stop()
+        pool.join()
 
 
 @contextmanager
@@ -70,11 +60,11 @@ def cluster_workers(address: str) -> Iterator[Workers]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError("--scheduler needs Dask: pip install 'simulearn[cluster]'") from error
+        raise InputError("a cluster needs Dask: pip install 'simulearn[cluster]'") from error
     try:
         client = Client(address, timeout=10, set_as_default=False)
     except (OSError, ValueError) as error:
-        raise InputError(f"--scheduler {address}: no Dask scheduler answers there") from error
+        raise InputError(f"{address}: no Dask scheduler answers there") from error
     try:
         executor = client.get_executor(pure=False)
         yield Workers(
@@ -85,28 +75,18 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         client.close()
 
 
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Set the environment in which workers begin."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(ONE_THREAD)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
-def _begin(parent: int) -> None:
+def _begin() -> None:
     """Leave Ctrl-C to the parent, and end when it is no more, even if it was killed."""
+    from threadpoolctl import threadpool_limits
+
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Matrices of a trial are small; threads of several workers would only wait for each other.
+    threadpool_limits(1)
+    parent = parent_process()
+    assert parent is not None
 
     def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(1.0)
+        parent.join()
         os._exit(1)
 
     threading.Thread(target=watch, daemon=True).start()

@@ -1,8 +1,11 @@
-"""Where grids lie on the bed: side by side in rows, amid the bed, or a reason why not."""
+"""Where grids lie on the bed: apart from one another, amid the bed, or a reason why not."""
 
 from collections.abc import Sequence
+from itertools import product
+from operator import itemgetter
 
 import numpy as np
+import rectpack
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
@@ -14,6 +17,10 @@ Array = NDArray[np.float64]
 GAP = 10.0  # mm between two grids
 EDGE = 1.0  # mm of the bed's edge that stay free
 ROUNDING = 1e-6
+UNIT = 1e-3  # mm, in which boxes are packed
+# Tried one after the other until all grids fit; the first keeps to rows.
+PACKINGS = (rectpack.MaxRectsBl, rectpack.MaxRectsBssf, rectpack.GuillotineBssfSas)
+SORTINGS = (rectpack.SORT_NONE, rectpack.SORT_AREA, rectpack.SORT_SSIDE)
 
 
 def place(grids: Sequence[Grid], section: Section, printer: Printer) -> list[Grid]:
@@ -38,13 +45,9 @@ def place(grids: Sequence[Grid], section: Section, printer: Printer) -> list[Gri
                 f"{which}is {_by(size)} mm, larger than what the bed of {printer.name} takes "
                 f"({_by(room)} mm, {EDGE:g} mm of its edge being kept free)"
             )
-    for turned in _turns(sizes, room):
-        now = np.where(turned[:, None], sizes[:, ::-1], sizes)
-        for order in (np.arange(len(grids)), np.argsort(-now[:, 1], kind="stable")):
-            corners = _rows(now[order], room)
-            if corners is not None:
-                corners[order] = corners.copy()
-                return _moved(grids, boxes, turned, corners, now, bed)
+    if (packed := _packed(sizes, room)) is not None:
+        corners, turned = packed
+        return _moved(grids, boxes, turned, corners, bed)
     raise InputError(
         f"the {len(grids)} grids do not fit beside one another on the bed of {printer.name} "
         f"({_by(room)} mm, with {GAP:g} mm between them); print fewer at once"
@@ -56,24 +59,34 @@ def _box(grid: Grid, section: Section) -> tuple[Array, Array]:
     return corners.min(axis=0), corners.max(axis=0)
 
 
-def _turns(sizes: Array, room: Array) -> list[NDArray[np.bool_]]:
-    """Return which grids to turn, tried one after the other: none that need not be, wide, tall."""
+def _packed(sizes: Array, room: Array) -> tuple[Array, NDArray[np.bool_]] | None:
+    """Return the lower left corners (n, 2) of boxes and which are turned, or None if none fits.
+
+    Boxes are turned where they must be; others only where all would not fit otherwise.
+
+    Args:
+        sizes: (n, 2) mm.
+        room: (2,) mm.
+    """
     must: NDArray[np.bool_] = np.asarray((sizes > room + ROUNDING).any(axis=1))
-    may = (sizes[:, ::-1] <= room + ROUNDING).all(axis=1)
-    wide, tall = sizes[:, 0] > sizes[:, 1], sizes[:, 0] < sizes[:, 1]
-    return [must, must | (may & tall), must | (may & wide)]
-
-
-def _rows(sizes: Array, room: Array) -> Array | None:
-    """Return the lower left corners (n, 2) of boxes set in rows, or None if they do not fit."""
-    corners = np.zeros_like(sizes)
-    x = y = height = 0.0
-    for k, (width, depth) in enumerate(sizes):
-        if x and x + width > room[0] + ROUNDING:
-            x, y, height = 0.0, y + height + GAP, 0.0
-        corners[k] = x, y
-        x, height = x + width + GAP, max(height, float(depth))
-    return corners if y + height <= room[1] + ROUNDING else None
+    upright = np.where(must[:, None], sizes[:, ::-1], sizes)
+    # A gap goes with each box, and one with the room; the packer counts in integers.
+    boxes = np.ceil((upright + GAP - ROUNDING) / UNIT).astype(int).tolist()
+    space = np.floor((room + GAP + ROUNDING) / UNIT).astype(int).tolist()
+    if sum(w * h for w, h in boxes) > space[0] * space[1]:
+        return None
+    for rotation, packing, sorting in product((False, True), PACKINGS, SORTINGS):
+        packer = rectpack.newPacker(pack_algo=packing, sort_algo=sorting, rotation=rotation)
+        for k, box in enumerate(boxes):
+            packer.add_rect(*box, rid=k)
+        packer.add_bin(*space)
+        packer.pack()
+        placed = sorted(packer.rect_list(), key=itemgetter(5))
+        if len(placed) == len(boxes):
+            corners = np.array([(x, y) for _, x, y, _, _, _ in placed]) * UNIT
+            turned = np.array([[w, h] for _, _, _, w, h, _ in placed]) != boxes
+            return corners, must ^ turned.any(axis=1)
+    return None
 
 
 def _moved(
@@ -81,10 +94,11 @@ def _moved(
     boxes: list[tuple[Array, Array]],
     turned: NDArray[np.bool_],
     corners: Array,
-    sizes: Array,
     bed: Bed,
 ) -> list[Grid]:
     """Return the grids with their boxes at the corners, all of them amid the bed."""
+    sizes = np.array([high - low for low, high in boxes])
+    sizes = np.where(turned[:, None], sizes[:, ::-1], sizes)
     middle = (np.array(bed.low) + bed.high) / 2
     shift = middle - ((corners + sizes).max(axis=0) + corners.min(axis=0)) / 2
     placed = []

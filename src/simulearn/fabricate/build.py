@@ -1,7 +1,7 @@
 """From grids on the bed to a toolpath: shells first, then what they enclose, layer by layer.
 
-There are only four kinds of layer, two halves of two parities; each is worked out once and laid
-down as often as the thickness asks for.
+There are only four kinds of layer, two halves of two parities. Each is computed once and printed as
+often as the thickness of the beam requires.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ SKIRT_LEAST = 3.0  # mm; a skirt nearer to the grid is left out
 def build(
     grids: Sequence[Grid], section: Section, settings: Settings, bed: Bed
 ) -> tuple[Toolpath, list[Message]]:
-    """Return the toolpath of grids, and what there is to say about it.
+    """Return the toolpath of grids, and warnings about it.
 
     Args:
         grids: valid designs without dangling beams, where they lie on the bed.
@@ -55,7 +55,7 @@ def build(
 
 
 class _Filled:
-    """The strokes of all regions of all grids, each worked out once."""
+    """The strokes of all regions of all grids, each computed once."""
 
     def __init__(self, plans: list[Plan], settings: Settings) -> None:
         self.settings = settings
@@ -86,9 +86,9 @@ class _Filled:
         ]
         tips = [strokes.tips() for *_, strokes in pieces]
         order = nearest_first([a for a, _ in tips], [b for _, b in tips], here)
-        for k, way in order:
+        for k, variant in order:
             g, region, strokes = pieces[k]
-            points, widths = strokes.path(way)
+            points, widths = strokes.path(variant)
             yield _bead(self.settings, region.role, region.part, g, points, widths)
 
     def _fill(self, g: int, regions: list[Region]) -> list[tuple[int, Region, Strokes]]:

@@ -162,7 +162,7 @@ class _Checked:
     def _move(self, rest: str, where: str) -> None:
         if GLUED.search(rest):  # 1E5 is X1 and E5 to some printers, 100000 to others
             raise InputError(
-                f"{where}: printers read {rest.strip()} in two ways; put a space before E"
+                f"{where}: printers differ in how they read {rest.strip()}; put a space before E"
             )
         for axis, text in TOKEN.findall(rest):
             axis = axis.upper()

@@ -78,10 +78,10 @@ def durations_of(moves: Moves, printer: Printer) -> Array:
         [motion.acceleration, motion.acceleration_travel, motion.acceleration_e],
         motion.acceleration_z,
     )
-    way = np.where(still, np.abs(moves.filament), distance)
+    length = np.where(still, np.abs(moves.filament), distance)
     fastest = np.where(plane, np.minimum(moves.speeds, motion.speed), moves.speeds) / 60
     corner = _corners(steps, distance, plane, motion.corner_speed)
-    return _times(way, fastest, acceleration, corner)
+    return _times(length, fastest, acceleration, corner)
 
 
 def _corners(steps: Array, distance: Array, plane: NDArray[np.bool_], square: float) -> Array:
@@ -96,17 +96,17 @@ def _corners(steps: Array, distance: Array, plane: NDArray[np.bool_], square: fl
     return np.append(0.0, np.where(both, speed, 0.0))
 
 
-def _times(way: Array, fastest: Array, acceleration: Array, corner: Array) -> Array:
+def _times(length: Array, fastest: Array, acceleration: Array, corner: Array) -> Array:
     """Return the times (m,) s of moves with trapezoids of speed.
 
     Args:
-        way: (m,) mm.
+        length: (m,) mm.
         fastest: (m,) mm/s.
         acceleration: (m,) mm/s2.
         corner: (m,) mm/s, at most, where a move begins; after the last one it stands still.
     """
     limit = np.append(np.minimum(corner, np.minimum(fastest, np.append(0, fastest[:-1]))), 0.0) ** 2
-    gain = 2 * acceleration * way
+    gain = 2 * acceleration * length
     reached = np.append(0.0, np.cumsum(gain))
     # v2 at a corner is at most v2 at any earlier one plus what is gained between.
     square = np.minimum.accumulate(limit - reached) + reached
@@ -117,6 +117,6 @@ def _times(way: Array, fastest: Array, acceleration: Array, corner: Array) -> Ar
     top = np.minimum(fastest**2, (gain + begin + end) / 2)
     peak = np.sqrt(top)
     ramps = (2 * peak - np.sqrt(begin) - np.sqrt(end)) / acceleration
-    flat = way - (2 * top - begin - end) / (2 * acceleration)
+    flat = length - (2 * top - begin - end) / (2 * acceleration)
     times: Array = ramps + np.maximum(flat, 0) / np.maximum(peak, 1e-9)
-    return np.where(way > 0, times, 0.0)
+    return np.where(length > 0, times, 0.0)

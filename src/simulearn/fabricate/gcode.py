@@ -55,7 +55,7 @@ def gcode(
         settings: how it is printed.
         printer: on what.
         notes: lines for the header: what is printed.
-        warnings: lines for the header: what to look out for.
+        warnings: lines for the header: what may be wrong with the print.
 
     Raises:
         InputError: the printer's start or end code is wrong.
@@ -81,7 +81,7 @@ def gcode(
 
 
 def write_gcode(text: str, path: Path | str) -> None:
-    """Write G-code to a file, whole or not at all.
+    """Write G-code to a file, completely or not at all.
 
     Raises:
         InputError: the file cannot be written.
@@ -178,7 +178,7 @@ def _after(printer: Printer) -> Iterator[str]:
 def _body(
     path: Toolpath, moves: Moves, durations: Array, settings: Settings, printer: Printer
 ) -> Iterator[str]:
-    """Yield the moves with what is to be known about them."""
+    """Yield the moves, with comments on layers, beads and progress."""
     relative = printer.extruder.extrusion == "relative"
     beads = [(k, bead) for k, layer in enumerate(path.layers) for bead in layer.beads]
     first = np.searchsorted(moves.bead, np.arange(len(beads) + 1))

@@ -31,7 +31,7 @@ class Job:
         printer: on what.
         settings: how.
         path: the toolpath.
-        warnings: what to look out for.
+        warnings: what may be wrong with the print.
     """
 
     grids: tuple[Grid, ...]
@@ -102,13 +102,14 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
     cleaned = []
     materials = [load_material(grid.material) for grid in grids]
     for grid, material, name in zip(grids, materials, names, strict=True):
-        said = f"{name}: " if len(grids) > 1 else ""
+        prefix = f"{name}: " if len(grids) > 1 else ""
         report = validate(grid, material)
         if not report.valid:
-            more = f" (and {len(report.errors) - 1} more; `simulearn validate` shows all)"
-            first = report.errors[0].message
-            raise InputError(said + first + (more if len(report.errors) > 1 else ""))
-        warnings += [replace(m, message=said + m.message) for m in report.warnings]
+            first, *others = report.errors
+            more = f" (and {len(others)} more)" if others else ""
+            text = prefix + first.message + more
+            raise InputError(text, first.code, first.where, report.errors)
+        warnings += [replace(m, message=prefix + m.message) for m in report.warnings]
         cleaned.append(clean(grid)[0])
     for name, material in zip(names, materials, strict=True):
         if material != materials[0]:
@@ -124,6 +125,6 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
         )
     section = materials[0].section
     placed = place(cleaned, section, printer)
-    path, told = build(placed, section, settings, printer.bed)
-    warnings += overridden + told
+    path, from_build = build(placed, section, settings, printer.bed)
+    warnings += overridden + from_build
     return Job(tuple(placed), names, materials[0], printer, settings, path, tuple(warnings))

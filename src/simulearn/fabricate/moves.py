@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 PRINT, TRAVEL, LIFT, RETRACT, RESTORE = range(5)
 STEP = 2.0  # lines; a travel no longer than this is done without retraction and lift
-APPROACH = 5.0  # mm above the bed on the way to the first bead
+APPROACH = 5.0  # mm above the bed on the travel to the first bead
 AWAY = 10.0  # mm above the print at its end
 DIGITS = 5  # of filament, mm
 

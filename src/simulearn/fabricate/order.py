@@ -1,6 +1,6 @@
-"""In which order the beads of a layer are printed: always on to the nearest that is left.
+"""The order in which the beads of a layer are printed: always the nearest of those left.
 
-A bead can be printed in several ways: strokes from any of their four ends, a ring from any corner.
+A bead has several variants: strokes begin at any of their four ends, a ring at any corner.
 """
 
 from collections.abc import Sequence
@@ -14,11 +14,11 @@ Array = NDArray[np.float64]
 def nearest_first(
     begins: Sequence[Array], ends: Sequence[Array], here: Array
 ) -> list[tuple[int, int]]:
-    """Return (bead, way) in printing order.
+    """Return (bead, variant) in printing order.
 
     Args:
-        begins: for each bead, where its ways begin, (w, 2) mm.
-        ends: where they end, (w, 2) mm.
+        begins: for each bead, where its variants begin, (v, 2) mm.
+        ends: where they end, (v, 2) mm.
         here: (2,) where the nozzle is.
     """
     if not begins:
@@ -26,13 +26,13 @@ def nearest_first(
     starts, stops = np.concatenate(begins), np.concatenate(ends)
     counts = [len(b) for b in begins]
     bead = np.repeat(np.arange(len(begins)), counts)
-    way = np.concatenate([np.arange(n) for n in counts])
+    variant = np.concatenate([np.arange(n) for n in counts])
     left = np.ones(len(bead), dtype=bool)
     order = []
     for _ in begins:
         away = np.sum((starts - here) ** 2, axis=1).round(6)  # ties are ties on every machine
         k = int(np.argmin(np.where(left, away, np.inf)))
-        order.append((int(bead[k]), int(way[k])))
+        order.append((int(bead[k]), int(variant[k])))
         here = stops[k]
         left &= bead != bead[k]
     return order

@@ -1,8 +1,8 @@
 """A printer as data: its bed, its limits, how it moves, and the code before and after a print.
 
 A profile is a TOML file. It may begin from another one (`base`) and name only what differs. What
-the actuation depends on comes from the material system; a profile may override it under [print],
-and is told off for it.
+the actuation depends on comes from the material system. A profile may override it under [print];
+the print then has a warning.
 """
 
 import tomllib
@@ -76,7 +76,7 @@ class Motion(_Table):
 
     Attributes:
         speed: fastest in x and y, mm/min.
-        speed_z: fastest in z, mm/min; slower than the material asks for, it wins.
+        speed_z: fastest in z, mm/min; lifts are no faster, whatever the material's settings.
         acceleration: while printing, mm/s2.
         acceleration_travel: of travels, mm/s2.
         acceleration_z: mm/s2.

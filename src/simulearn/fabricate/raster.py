@@ -1,9 +1,9 @@
 """Filling a quadrilateral by strokes that turn at its sides, without gaps and without overlap.
 
-Rows tile the region: as many as come nearest to the width asked for. Where the sides are not
+Rows tile the region, as many as make their width nearest to that of a line. Where the sides are not
 parallel a row is wider at one end, and its bead with it. A stroke ends half a row before the side,
-and the way to the next runs along the side: what it adds in length the stroke has given up, so that
-length times width is the region's area, however oblique its sides are.
+and the step to the next one runs along the side. That step is as long as what the stroke was
+shortened by, so length times width is the region's area, however oblique its sides are.
 
      ____________________
     |  ________________  |   row 3       then each stroke is lengthened at both ends by the
@@ -29,7 +29,7 @@ SPREAD = 0.25
 # A stroke is cut into pieces that differ in width by at most this share of it.
 STEP = 0.1
 MOST_PIECES = 12
-SAMPLES = 257  # places along a beam where the lean of strokes is looked at
+SAMPLES = 257  # places along a beam where the lean of strokes is computed
 # A region whose rows would be narrower or wider than so many lines is cut in two across its
 # strokes, unless they are too short (mm) for that.
 NARROWEST, WIDEST = 0.55, 1.5
@@ -49,17 +49,18 @@ class Strokes:
     ends: Array
     widths: Array
 
-    def path(self, way: int) -> tuple[Array, Array]:
-        """Return the points (p, 2) and widths (p - 1,) of one of four ways to print.
+    def path(self, variant: int) -> tuple[Array, Array]:
+        """Return the points (p, 2) and widths (p - 1,) of one of four variants.
 
-        Way 0 begins at the left of the first row, way 1 at its right, ways 2 and 3 are those
-        backwards.
+        Variant 0 begins at the left of the first row, variant 1 at its right; variants 2 and 3 are
+        those backwards.
         """
         ends, widths = self.ends.copy(), self.widths.copy()
-        turned = slice(1 - way % 2, None, 2)
+        turned = slice(1 - variant % 2, None, 2)
         ends[turned], widths[turned] = ends[turned, ::-1], widths[turned, ::-1]
         change = np.abs(widths[:, 1] - widths[:, 0]) / widths.mean(axis=1)
-        pieces = np.clip(np.ceil(change / STEP), 1, MOST_PIECES).astype(int)
+        # A little less, so that rounding does not decide between two numbers of pieces.
+        pieces = np.clip(np.ceil(change / STEP - 1e-6), 1, MOST_PIECES).astype(int)
         # Row k has pieces[k] + 1 points, and a width after each: the last is that of the turn.
         row = np.repeat(np.arange(len(pieces)), pieces + 1)
         count = np.arange(len(row)) - np.repeat(np.cumsum(pieces + 1) - pieces - 1, pieces + 1)
@@ -69,10 +70,10 @@ class Strokes:
         width = widths[row, 0] * (1 - middle) + widths[row, 1] * middle
         width[count == pieces[row]] = np.append((widths[:-1, 1] + widths[1:, 0]) / 2, 0.0)
         width = width[:-1]
-        return (path[::-1], width[::-1]) if way >= 2 else (path, width)
+        return (path[::-1], width[::-1]) if variant >= 2 else (path, width)
 
     def tips(self) -> tuple[Array, Array]:
-        """Return where each way begins and where it ends, (4, 2) each."""
+        """Return where each variant begins and where it ends, (4, 2) mm each."""
         first, last = self.ends[0], self.ends[-1]
         if len(self.ends) % 2:
             last = last[::-1]
@@ -86,7 +87,7 @@ def fill(
 
     Args:
         region: what to fill.
-        line: width of a row asked for, mm.
+        line: width that a row should have, mm.
         overlap: by how much strokes are lengthened at each end, mm.
         shell: width of the shell around the region's `keep_off`, mm.
         infill: share of the region that is filled.

@@ -123,9 +123,14 @@ def _moved_in(corners: Array, by: Array) -> Array:
 
 
 def _cuts(ratio: float, spare: float) -> list[tuple[str, float, float]]:
-    """Return the roles along a beam with an actuator of a ratio, each from where to where.
+    """Return the roles along a beam, each with where it begins and ends, 0 to 1.
 
-    What the actuator leaves at the ends is passive, unless it is shorter than `spare`.
+    An actuator lies in the middle, and the rest at either end is passive. A rest shorter than half
+    a row takes no stroke; there the actuator is printed to the end of its beam.
+
+    Args:
+        ratio: length of the actuator over the net length of the beam.
+        spare: half a row over the net length of the beam.
     """
     if not ratio:
         return [(PASSIVE, 0.0, 1.0)]

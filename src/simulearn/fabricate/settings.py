@@ -1,7 +1,7 @@
-"""With what a print is made: the material's settings, what a profile overrides, and a warning.
+"""The settings of a print: the material's, what a profile overrides, and warnings about that.
 
 The curl of a beam was measured with the material's line, speed, flow, temperature and fan. A
-printer may need others, but who changes them should know that the measured curl no longer holds.
+printer may need others; a warning then says that the measured curl no longer holds.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from simulearn.grid import Message
 from simulearn.material import Material
 from simulearn.material.material import Print
 
-# Settings of the machine rather than of the material: a profile changes them without a word.
+# Settings of the machine rather than of the material: a profile changes them without a warning.
 HARMLESS = {"speed_skirt", "speed_travel", "speed_z", "skirt_distance", "retraction"}
 HARMLESS |= {"retraction_speed"}
 UNITS = {
@@ -26,7 +26,7 @@ UNITS = {
     "speed_fill": " mm/min",
     "speed_shell": " mm/min",
 }
-# What any printer could be asked to do; beyond lies a slip of the pen.
+# What any printer may do; a value beyond is a mistake in writing.
 RANGES = {
     "layer": (0.02, 2.0),
     "line_width": (0.1, 4.0),
@@ -157,7 +157,7 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
     if ours.nozzle > line + ROUNDING:
         raise InputError(
             f"the nozzle of {printer.name} is {ours.nozzle:g} mm, wider than a shell row of "
-            f"{line:.3g} mm; fit a nozzle of at most {line:.3g} mm and say so under [print]"
+            f"{line:.3g} mm; fit a nozzle of at most {line:.3g} mm and write it under [print]"
         )
     if line > WIDEST * ours.nozzle + ROUNDING:
         raise InputError(
@@ -215,7 +215,7 @@ def _temperatures(printer: Printer, ours: Print) -> None:
 
 
 def _layers(material: Material, ours: Print) -> int:
-    """Return the number of layers; each half of a beam is a whole number of them."""
+    """Return the number of layers; each half of a beam has an integer number of them."""
     half = material.section.thickness / 2
     count = round(half / ours.layer)
     if not count or abs(count * ours.layer - half) > 1e-3 * half:

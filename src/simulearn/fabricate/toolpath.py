@@ -1,7 +1,7 @@
 """A toolpath as plain data: layers of beads, each with its role, width, height and speed.
 
-Nothing here knows of G-code or of a printer's dialect; a picture, an estimate and a file are three
-readings of the same beads. What lies between two beads is a travel.
+Nothing here depends on G-code or on a printer. A picture, an estimate and a file are made from the
+same beads. A move between two beads is a travel.
 """
 
 from dataclasses import dataclass
@@ -103,6 +103,6 @@ def toolpath_to_dict(path: Toolpath) -> dict[str, Any]:
         "flow": [bead.flow for _, bead in beads],
         "starts": [0, *np.cumsum(counts).tolist()],
         "points": np.concatenate([bead.points for _, bead in beads]).tolist(),
-        # The last point of a bead has no way to go: its width is 0.
+        # After the last point of a bead nothing is printed: its width is 0.
         "width": np.concatenate([np.append(bead.widths, 0.0) for _, bead in beads]).tolist(),
     }

@@ -1,11 +1,10 @@
 """What a grid takes for its numbers: nothing is reshaped, cut off or converted from text.
 
-An index may be a float that is a whole number, as many programs know no other numbers.
+An index may be a float such as 1.0, since many programs have no other numbers.
 """
 
 import json
-from math import isfinite
-from numbers import Real
+import sys
 from typing import Any, NoReturn
 
 import numpy as np
@@ -47,14 +46,14 @@ def numbers(values: Any, key: str, width: int = 0) -> NDArray[np.float64]:
 
 
 def indices(values: Any, key: str) -> NDArray[np.int64]:
-    """Return pairs of whole numbers as an array (n, 2) of their own.
+    """Return pairs of integers as an array (n, 2) of their own.
 
     Args:
-        values: lists, tuples or an array, also of floats that are whole numbers.
+        values: lists, tuples or an array, also of floats such as 1.0.
         key: "beams", for messages.
 
     Raises:
-        InputError: the shape is another, or the named entry is not a whole number.
+        InputError: the shape is another, or the named entry is not an integer.
     """
     array = _array(values, key, 2)
     if array.dtype.kind != "i" and not ((array % 1 == 0) & (abs(array) < INDEX)).all():
@@ -63,14 +62,14 @@ def indices(values: Any, key: str) -> NDArray[np.int64]:
 
 
 def index(value: Any, key: str) -> int:
-    """Return a whole number.
+    """Return an integer.
 
     Args:
-        value: an int, or a float that is a whole number.
+        value: an int, or a float such as 1.0.
         key: "fixed", for messages.
 
     Raises:
-        InputError: it is none.
+        InputError: it is not an integer.
     """
     plain = value if type(value) is int else _plain(value)
     if not _is_index(plain):
@@ -85,6 +84,12 @@ def shown(value: Any, most: int = 40) -> str:
     except (TypeError, ValueError, RecursionError):
         text = f"a {type(value).__name__}"
     return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def hint(key: str, value: Any) -> str:
+    """Return what to do about a wrong value, where that is plain."""
+    in_space = key == "joints" and isinstance(value, list | tuple) and len(value) == 3
+    return "; drop z" if in_space else ""
 
 
 def _array(values: Any, key: str, width: int) -> NDArray[Any]:
@@ -121,10 +126,8 @@ def _refuse(values: Any, key: str, width: int) -> NoReturn:
             break
     else:
         place, where, wrong = key, key, values
-    hint = ""
-    if key == "joints" and isinstance(wrong, (list, tuple)) and len(wrong) == 3:
-        hint = "; drop z"
-    raise InputError(f"{place} is {shown(wrong)}; {KEYS[key]}{hint}", code, where)
+    text = f"{place} is {shown(wrong)}; {KEYS[key]}{hint(key, wrong)}"
+    raise InputError(text, code, where)
 
 
 def _plain(value: Any) -> Any:
@@ -133,7 +136,8 @@ def _plain(value: Any) -> Any:
 
 
 def _is_number(x: Any) -> bool:
-    return isinstance(x, Real) and not isinstance(x, bool) and isfinite(x)
+    # A comparison, since a large int has no float; NaN compares false.
+    return isinstance(x, int | float) and not isinstance(x, bool) and abs(x) <= sys.float_info.max
 
 
 def _is_index(x: Any) -> bool:

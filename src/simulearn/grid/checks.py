@@ -1,7 +1,7 @@
 """The rules of a design as numbers, for many designs of one topology at once.
 
-`grid.validation` words them for people. Every rule has one place here, so that a grid that is
-valid alone is valid among a hundred.
+`grid.validation` writes the messages. Each rule is in one place, so that a grid is valid among a
+hundred exactly if it is valid alone.
 """
 
 from dataclasses import dataclass
@@ -46,8 +46,8 @@ class TrainingRange:
 
 
 @dataclass(frozen=True)
-class Topology:
-    """What the beams and the fixed joint alone say about a design.
+class Connections:
+    """What of the rules depends on the beams and the fixed joint alone.
 
     Attributes:
         joints: (J,) whether a joint stays when dangling beams are taken off.
@@ -77,12 +77,12 @@ class Lengths:
     edge: Numbers
 
 
-def topology(grid: Grid) -> Topology:
-    """Return what the beams and the fixed joint of a grid say, wherever its joints lie."""
+def connections(grid: Grid) -> Connections:
+    """Return which beams and joints of a grid stay and which are connected."""
     joints, beams = kept(grid.beams, len(grid.joints))
     parts = _parts(grid)
     sound = bool(beams.any() and joints[grid.fixed] and len(parts) == 1)
-    return Topology(joints, beams, parts, sound)
+    return Connections(joints, beams, parts, sound)
 
 
 def _parts(grid: Grid) -> list[set[int]]:
@@ -108,15 +108,15 @@ def coincident(joints: Numbers, most: int) -> Indices:
 
     Args:
         joints: (T, J, 2) mm.
-        most: a design of which so many pairs are found is left at that.
+        most: after so many pairs of one design, no more of it are sought.
 
     Returns:
         (pairs, 3) design, joint, joint of higher number; in rising order.
     """
     along = joints @ ASLANT
     order = along.argsort(axis=1)
-    along = np.take_along_axis(along, order, 1)
     rows = np.arange(len(joints))
+    along = along[rows[:, None], order]
     pairs = [np.zeros((0, 3), np.int64)]
     count = np.zeros(len(joints), np.int64)
     # Joints at one place are near on the projection: compare each with the next, the next but one
@@ -147,9 +147,9 @@ def lengths(beams: Indices, joints: Numbers, shape: Outlines) -> Lengths:
     full = np.hypot(along[..., 0], along[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         edges = (shape.beams[:, :, 1] - shape.beams[:, :, 0]) @ along[..., None]
-        edges = edges[..., 0] / full[..., None]
-        # The middle of a joint's side lies on the axis.
-        return Lengths(full, edges.mean(axis=2), edges.min(axis=2))
+        right, left = np.moveaxis(edges[..., 0], 2, 0) / full
+    # The middle of a joint's side lies on the axis.
+    return Lengths(full, (right + left) / 2, np.minimum(right, left))
 
 
 def too_short(actuators: Numbers, net: Numbers, limits: Limits) -> Mask:
@@ -216,7 +216,7 @@ def collisions(shape: Outlines, roomy: Mask, most: int | None = None) -> Indices
 
 @dataclass(frozen=True)
 class Checks:
-    """What `check_designs` says about T designs of one topology.
+    """The validity of T designs of one topology.
 
     Attributes:
         valid: (T,) whether a design has no error.
@@ -238,7 +238,7 @@ def check_designs(
     limits: Limits | None = None,
     training: TrainingRange | None = None,
 ) -> Checks:
-    """Return which designs of one topology are valid, as `validate` says it of each.
+    """Return which designs of one topology are valid; the rules are those of `validate`.
 
     Args:
         beams: (B, 2) joint indices.
@@ -257,7 +257,7 @@ def check_designs(
     like = Grid(np.zeros(joints.shape[1:]), beams, np.zeros(len(beams)), fixed)
     for wrong in structure_errors(like):
         raise InputError(wrong.message, wrong.code, wrong.where)
-    at = topology(like)
+    at = connections(like)
     shape = outlines(like.beams, joints, material.section.width, at.beams)
     measured = lengths(like.beams, joints, shape)
     crowded = measured.edge < SHORTEST_EDGE

@@ -40,7 +40,17 @@ def kept(beams: NDArray[np.int64], joints: int) -> tuple[NDArray[np.bool_], NDAr
 
 def removals(grid: Grid) -> list[Message]:
     """Return a warning for each beam and joint that `clean` takes off."""
-    joints, beams = kept(grid.beams, len(grid.joints))
+    return warnings_of(grid, *kept(grid.beams, len(grid.joints)))
+
+
+def warnings_of(grid: Grid, joints: NDArray[np.bool_], beams: NDArray[np.bool_]) -> list[Message]:
+    """Return a warning for each beam and joint that does not stay; see `kept`.
+
+    Args:
+        grid: the design.
+        joints: (J,) whether a joint stays.
+        beams: (B,) whether a beam stays.
+    """
     if beams.all() and joints.all():
         return []
     # Joints without a beam from the start; no message names those that lose theirs.
@@ -77,12 +87,12 @@ def clean(grid: Grid) -> tuple[Grid, list[Message]]:
             number[grid.fixed],
             grid.material,
         ),
-        removals(grid),
+        warnings_of(grid, joints, beams),
     )
 
 
 def fixed_removed(grid: Grid) -> str:
-    """Return what to say when the fixed joint is removed."""
+    """Return the message for a fixed joint that is removed."""
     return (
         f"joint {grid.fixed} is fixed but is removed, as no beam that stays meets it; "
         f"fix a joint of the grid that stays"

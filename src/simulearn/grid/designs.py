@@ -4,7 +4,6 @@ The rules are those of the paper's authors; each is a parameter. A draw depends 
 its number only, so that any design of a set can be drawn again alone and on any machine.
 """
 
-from functools import lru_cache
 from itertools import pairwise
 from math import cos, pi, sin, sqrt
 from typing import Annotated
@@ -19,7 +18,7 @@ from simulearn.grid.grid import Grid
 from simulearn.grid.lattice import MOST_CELLS, drop_beams, lattice
 from simulearn.grid.outline import outline
 from simulearn.grid.validation import validate
-from simulearn.material import Material, load_material
+from simulearn.material import load_material
 
 MOST_REDRAWS = 1000
 
@@ -120,7 +119,7 @@ def draw_valid(rules: Rules, seed: int, k: int) -> tuple[Grid, int]:
     """
     for redraw in range(MOST_REDRAWS + 1):
         grid = draw(rules, seed, k, redraw)
-        if validate(grid, _material(rules.material)).valid:
+        if validate(grid, load_material(rules.material)).valid:
             return grid, redraw
     raise InputError(f"{rules} gave no valid design in {MOST_REDRAWS} redraws")
 
@@ -128,7 +127,7 @@ def draw_valid(rules: Rules, seed: int, k: int) -> tuple[Grid, int]:
 def _lengthened(grid: Grid, rules: Rules) -> Grid:
     """Return the grid with actuators that are long enough; where none can be, without."""
     try:
-        shape = outline(grid, _material(rules.material).section)
+        shape = outline(grid, load_material(rules.material).section)
     except InputError:
         return grid  # no lengths to go by, and not valid anyhow
     # The middle of a joint's side lies on the axis.
@@ -147,8 +146,3 @@ def _lengthened(grid: Grid, rules: Rules) -> Grid:
         for ratio, length in zip(grid.actuators, net, strict=True)
     ]
     return Grid(grid.joints, grid.beams, ratios, grid.fixed, grid.material)
-
-
-@lru_cache
-def _material(name: str) -> Material:
-    return load_material(name)

@@ -45,8 +45,8 @@ class Grid:
 
     Raises:
         InputError: an array has another shape, as with joints in space, or holds what is not a
-            finite number; an index is not a whole number (1.0 is one); the message names the
-            entry. Whether indices exist and ratios are in range, `validate` says.
+            finite number; an index is no integer (1.0 counts as one). The message names the entry.
+            Indices that do not exist and ratios out of range are left to `validate`.
     """
 
     joints: NDArray[np.float64]

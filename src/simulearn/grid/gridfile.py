@@ -9,11 +9,13 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
-from simulearn.grid.arrays import shown
+from simulearn.grid.arrays import hint, shown
 from simulearn.grid.grid import Grid
 from simulearn.grid.structure import structure_errors
+from simulearn.material.material import is_name
 
 SCHEMA = "simulearn.grid/1"
+MOST_BYTES = 2**24  # several times the largest grid that can be computed
 
 Index = Annotated[int, Field(ge=0, lt=2**31)]  # the type's bound; the grid's is checked later
 
@@ -33,13 +35,17 @@ class _GridFile(BaseModel):
 KEYS = {"schema": f'this program reads "{SCHEMA}"', **KEYS_OF_GRID}
 
 
-def read_grid(path: Path | str) -> Grid:
+def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
     """Return the grid in a file.
+
+    Args:
+        path: of the file.
+        paths: whether its material may be the path of a file; if not, it must be a name.
 
     Raises:
         InputError: the file cannot be read or does not describe a grid; one line says where.
     """
-    text = read_text(path)
+    text = read_text(path, MOST_BYTES)
     try:
         data = json.loads(text, parse_constant=_no_constant, object_pairs_hook=_no_twins)
     except json.JSONDecodeError as error:
@@ -50,26 +56,31 @@ def read_grid(path: Path | str) -> Grid:
     except ValueError as error:  # of the two hooks, or a number of thousands of digits
         raise InputError(f"{path}: {error}") from error
     try:
-        return grid_from_dict(data)
+        return grid_from_dict(data, paths=paths)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{path}: {error}", error.code, error.where) from error
 
 
 def write_grid(grid: Grid, path: Path | str) -> None:
-    """Write a grid to a file, whole or not at all.
+    """Write a grid to a file, completely or not at all.
 
     Raises:
         InputError: the file cannot be written, or the grid could not be read back.
     """
     data = grid_to_dict(grid)
-    grid_from_dict(data)
+    grid_from_dict(data, paths=True)
     lines = (f"  {json.dumps(key)}: {json.dumps(value)}" for key, value in data.items())
     with replacing(path) as temporary:
         temporary.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
 
-def grid_from_dict(data: Any) -> Grid:
+def grid_from_dict(data: Any, *, paths: bool = False) -> Grid:
     """Return the grid that a dict with the file's keys describes.
+
+    Args:
+        data: such as JSON gives.
+        paths: whether its material may be the path of a file. From a source that is not trusted
+            only names are safe: a path makes the program open what it names.
 
     Raises:
         InputError: a key, type, length, index or number is wrong; one line says which.
@@ -77,12 +88,16 @@ def grid_from_dict(data: Any) -> Grid:
     try:
         file = _GridFile.model_validate(data)
     except ValidationError as error:
-        raise InputError(_line(error.errors(include_url=False)[0])) from error
+        raise InputError(_line(error.errors(include_url=False)[0]), "grid-file") from error
     if not file.material.isprintable():
-        raise InputError(f"material is {shown(file.material)}; {KEYS['material']}")
+        text = f"material is {shown(file.material)}; {KEYS['material']}"
+        raise InputError(text, "material", "material")
+    if not (paths or is_name(file.material)):
+        text = f"material is a path; {shown(file.material)} is not the name of a material system"
+        raise InputError(text, "material-path", "material")
     grid = Grid(file.joints, file.beams, file.actuators, file.fixed, file.material)
     for wrong in structure_errors(grid):
-        raise InputError(wrong.message)
+        raise InputError(wrong.message, wrong.code, wrong.where)
     return grid
 
 
@@ -122,4 +137,4 @@ def _line(error: Any) -> str:
     if key not in KEYS:
         return f"{shown(place[0])} is not a key of a grid; its keys are {', '.join(KEYS)}"
     where = key + "".join(f"[{k}]" for k in place[1:])
-    return f"{where} is {shown(value)}; {KEYS[key]}"
+    return f"{where} is {shown(value)}; {KEYS[key]}{hint(key, value)}"

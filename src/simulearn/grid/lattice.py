@@ -32,7 +32,7 @@ def lattice(
         InputError: a count is not in 1 to 100, or the length is not positive.
     """
     if len(cells) != 2 or not all(1 <= n <= MOST_CELLS and n == int(n) for n in cells):
-        raise InputError(f"cells is {tuple(cells)}; a grid has 1 to {MOST_CELLS} of them each way")
+        raise InputError(f"cells is {tuple(cells)}; a grid has 1 to {MOST_CELLS} along each axis")
     if not (isfinite(length) and length > 0):
         raise InputError(f"length is {length:g}; a beam is longer than 0 mm")
     nx, ny = (int(n) for n in cells)

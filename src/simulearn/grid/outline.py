@@ -1,9 +1,9 @@
 """The outlines of joints and beams in the plane.
 
-A joint is a quadrilateral; `grid.corners` says between which beams its corners lie. A corner lies
-where the left edge of the beam before it meets the right edge of the beam after it. A beam runs
-from the side of one joint to the side of another: its long edges lie half a width to either side
-of its axis, its ends are oblique.
+A joint is a quadrilateral; the rule in `grid.corners` gives the beams before and after each of its
+corners. A corner lies where the left edge of the first meets the right edge of the second. A beam
+runs from the side of one joint to the side of another: its long edges lie half a width to either
+side of its axis, its ends are oblique.
 """
 
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Outline:
 
     Attributes:
         joints: (J, 4, 2) corners counter-clockwise, the first being the one with the smallest
-            angle in [0, 2 pi) seen from the joint.
+            angle in [0, 2 pi) from the joint.
         sides: (B, 2) side of the start joint and of the end joint that the beam meets;
             side k of a joint runs from its corner k to its corner k + 1 (mod 4).
         beams: (B, 2, 2, 2) [start, end] x [right, left] x (x, y), where left is z x (start -> end).
@@ -140,7 +140,7 @@ def outlines(
     at = corners(meeting, valence, direction, len(beams))
     with np.errstate(divide="ignore", invalid="ignore"):  # where two beams leave in one direction
         reach = width / 2 / np.sin(at.opening / 2)
-        corner = reach * np.exp(1j * at.bisector)  # x + i y, seen from the joint
+        corner = reach * np.exp(1j * at.bisector)  # x + i y, from the joint
         turn = (corner[..., LAST] - corner) * np.conj(corner[..., NEXT] - corner)
         inside = np.degrees(np.arctan2(turn.imag, turn.real))
     place = corner.view(np.float64).reshape(trials, count, 4, 2) + joints[:, :, None]

@@ -6,15 +6,18 @@ So T-junctions split the line they touch, and lines drawn twice give their beams
 """
 
 from collections.abc import Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from simulearn.errors import InputError
 from simulearn.grid.grid import Grid
 
-Point = NDArray[np.float64]
+Numbers = NDArray[np.float64]
+# Neighbours are searched a little beyond the tolerance, so that rounding leaves none out (mm).
+SLACK = 1e-6
 
 
 def sketch(
@@ -33,20 +36,14 @@ def sketch(
     Raises:
         InputError: there are no lines, or one is not a list of two or more points.
     """
-    pieces = [piece for k, line in enumerate(lines) for piece in pairwise(_points(line, k))]
-    if not pieces:
+    pairs = [pair for k, line in enumerate(lines) for pair in pairwise(_points(line, k))]
+    if not pairs:
         raise InputError("the sketch has no lines; a grid needs some")
-    corners = [point for piece in pieces for point in piece]
-    crossings = [point for a, b in combinations(pieces, 2) for point in _crossing(a, b)]
-    joints: list[Point] = []
-    for point in corners + crossings:
-        if not any(np.linalg.norm(point - joint) <= tolerance for joint in joints):
-            joints.append(point)
-    places = np.array(joints)
-
+    pieces = np.array(pairs)
+    places = _distinct(np.concatenate([pieces.reshape(-1, 2), _crossings(pieces)]), tolerance)
     beams: dict[tuple[int, int], None] = {}  # a set that keeps its order
-    for piece in pieces:
-        for i, j in pairwise(_through(places, *piece, tolerance)):
+    for through in _through(places, pieces, tolerance):
+        for i, j in pairwise(through):
             if (j, i) not in beams:
                 beams[i, j] = None
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
@@ -55,7 +52,7 @@ def sketch(
     return Grid(places, list(beams), np.zeros(len(beams)), int(fixed), material)
 
 
-def _points(line: ArrayLike, k: int) -> Point:
+def _points(line: ArrayLike, k: int) -> Numbers:
     """Return a polyline's points (n, 2)."""
     try:
         points = np.asarray(line, dtype=np.float64)
@@ -68,25 +65,55 @@ def _points(line: ArrayLike, k: int) -> Point:
     return points
 
 
-def _crossing(a: tuple[Point, Point], b: tuple[Point, Point]) -> list[Point]:
-    """Return the point where two straight pieces cross, if they do."""
-    along, across, apart = a[1] - a[0], b[1] - b[0], b[0] - a[0]
+def _crossings(pieces: Numbers) -> Numbers:
+    """Return the points (n, 2) where straight pieces (P, 2, 2) cross, by the numbers of the pieces.
+
+    Parallel pieces have none: where they overlap, their ends are joints.
+    """
+    lines = shapely.linestrings(pieces)
+    a, b = shapely.STRtree(lines).query(lines)
+    a, b = a[a < b], b[a < b]
+    order = np.lexsort((b, a))
+    a, b = pieces[a[order]], pieces[b[order]]
+    along, across, apart = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0], b[:, 0] - a[:, 0]
     turn = _cross(along, across)
-    if turn == 0:  # parallel: where they overlap, their ends do the work
-        return []
-    s, t = _cross(apart, across) / turn, _cross(apart, along) / turn
-    return [a[0] + s * along] if 0 <= s <= 1 and 0 <= t <= 1 else []
+    with np.errstate(divide="ignore", invalid="ignore"):
+        s, t = _cross(apart, across) / turn, _cross(apart, along) / turn
+    meet = (turn != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+    points: Numbers = a[meet, 0] + s[meet, None] * along[meet]
+    return points
 
 
-def _cross(a: Point, b: Point) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
+def _cross(a: Numbers, b: Numbers) -> Numbers:
+    product: Numbers = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return product
 
 
-def _through(joints: Point, start: Point, end: Point, tolerance: float) -> list[int]:
-    """Return the joints within a tolerance of a straight piece, in order along it."""
-    along = end - start
-    square = along @ along
-    place = (joints - start) @ along / square if square else np.zeros(len(joints))
-    nearest = start + np.clip(place, 0, 1)[:, None] * along
-    near = np.linalg.norm(joints - nearest, axis=1) <= tolerance
-    return [int(k) for k in np.argsort(place, kind="stable") if near[k]]
+def _distinct(points: Numbers, tolerance: float) -> Numbers:
+    """Return the points (n, 2) without those that are within a tolerance of an earlier one."""
+    marks = shapely.points(points)
+    k, earlier = shapely.STRtree(marks).query(marks, "dwithin", tolerance + SLACK)
+    near = (earlier < k) & (np.linalg.norm(points[k] - points[earlier], axis=1) <= tolerance)
+    stay = np.ones(len(points), bool)
+    order = np.lexsort((earlier[near], k[near]))
+    for point, other in zip(k[near][order].tolist(), earlier[near][order].tolist(), strict=True):
+        if stay[other]:
+            stay[point] = False
+    return points[stay]
+
+
+def _through(joints: Numbers, pieces: Numbers, tolerance: float) -> list[list[int]]:
+    """Return for each straight piece the joints within a tolerance of it, in order along it."""
+    tree = shapely.STRtree(shapely.points(joints))
+    piece, joint = tree.query(shapely.linestrings(pieces), "dwithin", tolerance + SLACK)
+    start, along = pieces[piece, 0], pieces[piece, 1] - pieces[piece, 0]
+    square = (along**2).sum(axis=1)
+    apart = joints[joint] - start
+    place = (apart * along).sum(axis=1) / np.where(square > 0, square, 1.0)
+    nearest = np.clip(place, 0, 1)[:, None] * along
+    near = np.linalg.norm(apart - nearest, axis=1) <= tolerance
+    order = np.lexsort((joint[near], place[near], piece[near]))
+    through: list[list[int]] = [[] for _ in pieces]
+    for p, j in zip(piece[near][order].tolist(), joint[near][order].tolist(), strict=True):
+        through[p].append(j)
+    return through

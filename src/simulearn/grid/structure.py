@@ -11,7 +11,7 @@ from simulearn.grid.grid import Grid
 
 # Far beyond any printer; keeps squares and products of coordinates from overflowing (mm).
 FARTHEST = 1e5
-# Some fifty times what anyone prints. Validation takes a second and some hundred MB for so many.
+# Far beyond any print. So many take at most half a second and 200 MB to validate.
 MOST_JOINTS = 20_000
 MOST_BEAMS = 2 * MOST_JOINTS  # no more than four meet at a joint
 

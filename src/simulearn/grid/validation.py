@@ -18,19 +18,19 @@ from simulearn.errors import Message
 from simulearn.grid.checks import (
     ONE_PLACE,
     SHORTEST_EDGE,
+    Connections,
     Lengths,
-    Topology,
     TrainingRange,
     coincident,
     collisions,
+    connections,
     lengths,
     outside,
     too_short,
-    topology,
     unusual,
     usual_length,
 )
-from simulearn.grid.cleaning import fixed_removed, removals
+from simulearn.grid.cleaning import fixed_removed, warnings_of
 from simulearn.grid.grid import Grid
 from simulearn.grid.outline import Outlines, outlines
 from simulearn.grid.structure import structure_errors
@@ -88,9 +88,9 @@ def validate(
     if wrong := structure_errors(grid):
         return Validation(tuple(wrong), ())
     limits = limits or material.limits
-    at = topology(grid)
+    at = connections(grid)
     joints = grid.joints[None]
-    coinciding = coincident(joints, MOST_NAMED)[:, 1:].tolist()
+    coinciding = coincident(joints, MOST_NAMED)[:MOST_NAMED, 1:].tolist()
     errors = [*_coincidences(grid, coinciding), *_layout(grid, at)]
     shape = outlines(grid.beams, joints, material.section.width, at.beams)
     for k in np.flatnonzero(at.joints & ~shape.sound[0]).tolist():
@@ -100,7 +100,10 @@ def validate(
     faced = at.beams & shape.sound[0, grid.beams].all(axis=1)  # with an outline at both ends
     crowded = faced & (measured.edge[0] < SHORTEST_EDGE)
     errors += _beam_errors(grid, measured, faced, crowded, limits)
-    warnings = [*removals(grid), *_beam_warnings(measured, faced, limits, training)]
+    warnings = [
+        *warnings_of(grid, at.joints, at.beams),
+        *_beam_warnings(measured, faced, limits, training),
+    ]
     if not coinciding:
         errors += _collisions(shape, faced & ~crowded)
         if training is not None and at.beams.any():
@@ -121,7 +124,7 @@ def _coincidences(grid: Grid, pairs: list[list[int]]) -> Iterator[Message]:
         )
 
 
-def _layout(grid: Grid, at: Topology) -> Iterator[Message]:
+def _layout(grid: Grid, at: Connections) -> Iterator[Message]:
     """Yield errors of the connections of a grid."""
     if not len(grid.beams):
         yield Message("no-beams", "grid", "the grid has 0 beams; it needs some that close a loop")
@@ -208,7 +211,7 @@ def _collisions(shape: Outlines, roomy: Mask) -> Iterator[Message]:
         yield Message("overlap", b, text)
 
 
-def _size(grid: Grid, at: Topology, training: TrainingRange) -> Iterator[Message]:
+def _size(grid: Grid, at: Connections, training: TrainingRange) -> Iterator[Message]:
     """Yield a warning when the grid is smaller or larger than the model's training data."""
     away = np.linalg.norm(grid.joints[at.joints] - grid.joints[grid.fixed], axis=1).max()
     least, most = training.dimension

@@ -110,12 +110,12 @@ class Task(_Part):
     @property
     def start(self) -> Grid:
         """The design to begin with, its fixed joint at the origin."""
-        return grid_from_dict(self.grid).centred
+        return grid_from_dict(self.grid, paths=True).centred
 
     @property
     def aims(self) -> Goals:
         """The goals as arrays."""
-        grid = grid_from_dict(self.grid)
+        grid = grid_from_dict(self.grid, paths=True)
         return Goals.of(
             [_vertex(goal.vertex, f"goals[{k}].vertex", grid) for k, goal in enumerate(self.goals)],
             np.array([goal.target for goal in self.goals]),
@@ -157,14 +157,18 @@ PLACES: dict[str, type[BaseModel]] = {
 SECTIONS = ("start", "middle", "end")
 
 
-def read_task(path: Path | str) -> Task:
+def read_task(path: Path | str, *, paths: bool = False) -> Task:
     """Return the task in a file.
+
+    Args:
+        path: of the file.
+        paths: whether the grid's material may be the path of a file; if not, it must be a name.
 
     Raises:
         InputError: the file cannot be read or does not describe a task; one line says where.
     """
     try:
-        return task_from_dict(json.loads(read_text(path)))
+        return task_from_dict(json.loads(read_text(path)), paths=paths)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise InputError(f"{path}: is not valid JSON at {place}: {error.msg}") from error
@@ -189,8 +193,12 @@ def task_to_dict(task: Task) -> dict[str, Any]:
     return task.model_dump(by_alias=True)
 
 
-def task_from_dict(data: Any) -> Task:
+def task_from_dict(data: Any, *, paths: bool = False) -> Task:
     """Return the task that a dict with the file's keys describes.
+
+    Args:
+        data: such as JSON gives.
+        paths: whether the grid's material may be the path of a file; if not, it must be a name.
 
     Raises:
         InputError: a key, type, index or number is wrong; one line says which.
@@ -202,7 +210,7 @@ def task_from_dict(data: Any) -> Task:
     except ValidationError as error:
         raise InputError(_line(error.errors(include_url=False)[0])) from error
     try:
-        grid = grid_from_dict(task.grid)
+        grid = grid_from_dict(task.grid, paths=paths)
     except InputError as error:
         raise InputError(f"grid: {error}") from error
     for removed in removals(grid):

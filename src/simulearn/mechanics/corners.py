@@ -1,16 +1,12 @@
 """Corners of joints and sections from the poses of beam mechanics, and poses from corners."""
 
 import jax.numpy as jnp
-import numpy as np
-from numpy.typing import NDArray
 
 from simulearn.mechanics.forces import FLIP, BeamState
 from simulearn.mechanics.model import SectionModel
 from simulearn.mechanics.poses import Array
 from simulearn.mechanics.section import in_s
 from simulearn.mechanics.topology import FlatGeometry, Topology
-
-Numbers = NDArray[np.float64]
 
 
 def local_corners(
@@ -62,20 +58,3 @@ def placed(
     middle = jnp.einsum("bik,bck->bci", state.middles.R, sections) + state.middles.p[:, None]
     end = faces[1][:, jnp.array([1, 0, 3, 2])]
     return at, jnp.stack([faces[0], middle, end], 1)
-
-
-def poses_of(corners: Numbers, local: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the rotations (..., 3, 3) and places (..., 3) that bring corners nearest.
-
-    Args:
-        corners: (..., C, 3) in space.
-        local: (..., C, 3) in the body, about its centre.
-
-    Source: W. Kabsch, Acta Cryst. A32, 922 (1976).
-    """
-    centre = corners.mean(axis=-2)
-    product = np.swapaxes(corners - centre[..., None, :], -1, -2) @ local
-    u, _, v = np.linalg.svd(product)
-    sign = np.ones(product.shape[:-1])
-    sign[..., 2] = np.sign(np.linalg.det(u @ v))
-    return (u * sign[..., None, :]) @ v, centre

@@ -2,6 +2,8 @@
 
 from typing import Any, NamedTuple
 
+REFERENCE_WIDTH = 7.2  # mm; lengths count in sections of this width
+
 
 class SectionModel(NamedTuple):
     """Fitted properties of a printed beam; polynomials are coefficients of s, s2.

@@ -8,20 +8,18 @@ Formulas: J. Sola, J. Deray, D. Atchuthan, A micro Lie theory for state estimati
 2018.
 """
 
-from collections.abc import Callable, Sequence
-from math import factorial
+from collections.abc import Sequence
+from fractions import Fraction
+from math import comb, factorial
 from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
-import numpy as np
-from numpy.polynomial.chebyshev import Chebyshev
-from numpy.polynomial.polynomial import Polynomial
 
 Array = jax.Array
 
 TERMS = 9  # of the series of sine and cosine: exact to 1e-9 up to two radians
-WIDEST = 2.2  # rad; logarithms are right up to here (an element's ends turn by less than half)
+WIDEST = 3.0  # rad; logarithms are right up to here (an element's ends turn by less than half)
 
 
 class Pose(NamedTuple):
@@ -56,29 +54,23 @@ def _series(first: int) -> tuple[float, ...]:
 SINE, COSINE, CUBIC = _series(1), _series(2), _series(3)  # sin t/t, (1-cos t)/t2, (t-sin t)/t3
 
 
-def _fitted(
-    function: Callable[[np.ndarray], np.ndarray], top: float, degree: int
-) -> tuple[float, ...]:
-    """Return a polynomial of a function that is smooth from 0 to top but has a hole at 0."""
-    x = np.linspace(1e-6, top, 4001)
-    return tuple(Chebyshev.fit(x, function(x), degree, [0, top]).convert(kind=Polynomial).coef)
+def _bernoulli(most: int) -> list[Fraction]:
+    """Return Bernoulli's numbers B(0) to B(most)."""
+    numbers = [Fraction(1)]
+    for m in range(1, most + 1):
+        total = sum((comb(m + 1, k) * b for k, b in enumerate(numbers)), Fraction(0))
+        numbers.append(-total / (m + 1))
+    return numbers
 
 
-def _angle_over_sine(x: np.ndarray) -> np.ndarray:
-    """Return t / sin t as a function of x = (1 - cos t) / 2."""
-    t = 2 * np.arcsin(np.sqrt(x))
-    return t / np.sin(t)
-
-
-def _inverse_left(x: np.ndarray) -> np.ndarray:
-    """Return (1 - t sin t / (2 (1 - cos t))) / t2 as a function of x = t2."""
-    t = np.sqrt(x)
-    return (1 - t * np.sin(t) / (2 * (1 - np.cos(t)))) / x
-
-
-LOGARITHM = _fitted(_angle_over_sine, (1 - np.cos(WIDEST)) / 2, 18)
-INVERSE = _fitted(_inverse_left, WIDEST**2, 10)
+# (1 - t sin t / (2 (1 - cos t))) / t2 as a function of t2: sum of |B(2 n)| x^(n - 1) / (2 n)!
+INVERSE = tuple(
+    float(abs(number) / factorial(2 * n)) for n, number in enumerate(_bernoulli(36)[::2]) if n > 0
+)
 INVERSE_SLOPE = tuple(n * c for n, c in enumerate(INVERSE))[1:]
+# t / sin t as a function of x = (1 - cos t) / 2, where x is small
+LOGARITHM = tuple(4.0**n * factorial(n) ** 2 / factorial(2 * n + 1) for n in range(12))
+SMALL = 0.02
 
 
 def polynomial(coefficients: Sequence[float], x: Array) -> Array:
@@ -87,6 +79,14 @@ def polynomial(coefficients: Sequence[float], x: Array) -> Array:
     for c in coefficients[-2::-1]:
         value = value * x + c
     return value
+
+
+def _angle_over_sine(x: Array) -> Array:
+    """Return t / sin t as a function of x = (1 - cos t) / 2."""
+    safe = jnp.where(x < SMALL, 0.5, x)  # its root has no slope at 0
+    sine = 2 * jnp.sqrt(safe * (1 - safe))
+    far = jnp.arctan2(sine, 1 - 2 * safe) / sine
+    return jnp.where(x < SMALL, polynomial(LOGARITHM, jnp.minimum(x, SMALL)), far)
 
 
 def exp_so3(w: Array) -> Array:
@@ -114,7 +114,7 @@ def log_se3(pose: Pose) -> Array:
     axis = jnp.stack(
         [R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]], -1
     )
-    w = axis / 2 * polynomial(LOGARITHM, x)[..., None]
+    w = axis / 2 * _angle_over_sine(x)[..., None]
     h = hat(w)
     square = (w * w).sum(-1)[..., None, None]
     inverse = jnp.eye(3) - h / 2 + polynomial(INVERSE, square) * (h @ h)

@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 
 from simulearn.grid.outline import corner_topology
 from simulearn.material import Section
+from simulearn.mechanics.model import REFERENCE_WIDTH
 from simulearn.mechanics.poses import Array
 
 Indices = NDArray[np.int64]
-
-REFERENCE_WIDTH = 7.2  # mm; lengths count in sections of this width
 
 
 class Topology(NamedTuple):

@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from simulearn.rigid import fit_rotation
 from simulearn.show import style
 from simulearn.show.camera import Camera
 from simulearn.show.deformed import draw_skin, draw_triad, extent
@@ -38,10 +39,9 @@ class Place:
 
     @classmethod
     def fitting(cls, points: Array, targets: Array) -> "Place":
-        """Return the motion that brings points (N, 3) closest to targets (N, 3), by Kabsch."""
+        """Return the motion that brings points (N, 3) closest to targets (N, 3), in squares."""
         middle, wanted = points.mean(axis=0), targets.mean(axis=0)
-        u, _, vt = np.linalg.svd((points - middle).T @ (targets - wanted))
-        turn = vt.T @ np.diag([1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+        turn, _ = fit_rotation(targets, points - middle)
         return cls(turn, wanted - turn @ middle)
 
     @classmethod

@@ -57,8 +57,12 @@ def result_to_dict(result: Result) -> dict[str, Any]:
     }
 
 
-def result_from_dict(data: Any) -> Result:
+def result_from_dict(data: Any, *, paths: bool = False) -> Result:
     """Return the result of its machine form; stresses and mesh are not part of it.
+
+    Args:
+        data: such as JSON gives.
+        paths: whether the grid's material may be the path of a file; if not, it must be a name.
 
     Raises:
         InputError: a key is missing or holds the wrong thing; the message names it.
@@ -72,7 +76,7 @@ def result_from_dict(data: Any) -> Result:
         raise InputError("engine: is not a name")
     if not isinstance(data["seconds"], int | float) or not np.isfinite(data["seconds"]):
         raise InputError("seconds: is not a number")
-    grid = grid_from_dict(data["grid"])
+    grid = grid_from_dict(data["grid"], paths=paths)
     return Result(
         grid=grid,
         engine=data["engine"],
@@ -89,14 +93,18 @@ def write_json(result: Result, path: Path | str) -> None:
         temporary.write_text(json.dumps(result_to_dict(result), allow_nan=False), "utf-8")
 
 
-def read_json(path: Path | str) -> Result:
+def read_json(path: Path | str, *, paths: bool = False) -> Result:
     """Read a result from its JSON file.
+
+    Args:
+        path: of the file.
+        paths: whether the grid's material may be the path of a file; if not, it must be a name.
 
     Raises:
         InputError: the file is missing or not a result.
     """
     try:
-        return result_from_dict(json.loads(read_text(path)))
+        return result_from_dict(json.loads(read_text(path)), paths=paths)
     except json.JSONDecodeError as error:
         raise InputError(f"{path}: is not valid JSON: {error}") from error
     except InputError as error:
@@ -126,8 +134,12 @@ def write_npz(result: Result, path: Path | str) -> None:
         np.savez_compressed(temporary, **arrays)
 
 
-def read_npz(path: Path | str) -> Result:
+def read_npz(path: Path | str, *, paths: bool = False) -> Result:
     """Read a result from its NPZ file.
+
+    Args:
+        path: of the file.
+        paths: whether the grid's material may be the path of a file; if not, it must be a name.
 
     Raises:
         InputError: the file is missing or not a result.
@@ -151,7 +163,8 @@ def read_npz(path: Path | str) -> Result:
                 **{key: arrays[key].item() for key in ("schema", "engine", "seconds")},
                 **{key: arrays[key] for key in ("joints", "beams")},
                 "grid": json.loads(arrays["grid"].item()),
-            }
+            },
+            paths=paths,
         )
         record = json.loads(arrays["record"].item())
     except (KeyError, ValueError) as error:

@@ -217,7 +217,7 @@ def save_bundle(
     training: Mapping[str, Any] | None = None,
     metrics: Mapping[str, Any] | None = None,
 ) -> Bundle:
-    """Write a model to a folder, whole or not at all; one that is there is replaced.
+    """Write a model to a folder, completely or not at all; one that is there is replaced.
 
     Args:
         path: of the folder.

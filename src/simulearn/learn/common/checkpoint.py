@@ -25,7 +25,7 @@ def save(path: Path, tree: Any, header: dict[str, Any]) -> None:
     leaves = jax.tree.leaves(tree)
     arrays = {f"{k:05d}": np.asarray(leaf) for k, leaf in enumerate(leaves)}
     with replacing(path) as temporary:
-        save_file(arrays, temporary, {"told": json.dumps(header)})
+        save_file(arrays, temporary, {"header": json.dumps(header)})
 
 
 def header(path: Path) -> dict[str, Any]:
@@ -36,7 +36,7 @@ def header(path: Path) -> dict[str, Any]:
     """
     try:
         with safe_open(path, "numpy") as file:
-            content: dict[str, Any] = json.loads(file.metadata()["told"])
+            content: dict[str, Any] = json.loads(file.metadata()["header"])
             return content
     except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
         raise InputError(f"{path}: is not a checkpoint; delete it to begin anew") from error

@@ -20,7 +20,7 @@ class Evaluation:
 
     Attributes:
         batches: the trials, by topology.
-        frames: the answers, in the same order.
+        frames: the predictions, in the same order.
         errors: of all trials, in the order of the batches.
     """
 
@@ -29,7 +29,7 @@ class Evaluation:
     errors: Errors
 
     def trial(self, k: int) -> tuple[Batch, Frames, int]:
-        """Return batch, answer and index within both of the k-th of all trials."""
+        """Return batch, prediction and index within both of the k-th of all trials."""
         for batch, frames in zip(self.batches, self.frames, strict=True):
             if k < len(batch):
                 return batch, frames, k
@@ -44,13 +44,13 @@ class Evaluation:
 
 def for_testing(data: Dataset) -> list[Batch]:
     """Return the trials to evaluate on: those kept for testing, or all if none is to train on."""
-    kept = [b.take(b.test) for b in data.batches if b.test.any()]
-    if not kept and len(data):
+    testing = [b.take(b.test) for b in data.batches if b.test.any()]
+    if not testing and len(data):
         raise InputError(
             f"{data.config.name}: has no trials kept for testing (test_every is 0); a model is "
             "not judged by what it may have learnt from"
         )
-    return kept
+    return testing
 
 
 def evaluate(
@@ -58,22 +58,22 @@ def evaluate(
     batches: Sequence[Batch],
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Evaluation:
-    """Return the answers of a model to the designs of trials, and their errors.
+    """Return the predictions of a model to the designs of trials, and their errors.
 
     Args:
         model: to evaluate.
-        batches: the trials; the whole of what is given counts.
+        batches: the trials; all of them count.
         progress: called with (trials done, trials in all).
     """
     total = sum(map(len, batches))
-    parts, answers, found, done = [], [], [], 0
+    parts, predictions, measured, done = [], [], [], 0
     for batch in batches:
         for begin in range(0, len(batch), AT_ONCE):
             part = batch.take(slice(begin, begin + AT_ONCE))
-            answer = model.rollout(designs_of(part))
+            prediction = model.rollout(designs_of(part))
             parts.append(part)
-            answers.append(answer)
-            found.append(errors(answer, part))
+            predictions.append(prediction)
+            measured.append(errors(prediction, part))
             done += len(part)
             progress(done, total)
-    return Evaluation(parts, answers, together(found))
+    return Evaluation(parts, predictions, together(measured))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from simulearn.dataset import Batch
 from simulearn.dataset.features import end_modes, touching
 from simulearn.learn.common.model import Frames
+from simulearn.rigid import fit_rotation
 
 Array = NDArray[np.float64]
 
@@ -119,11 +120,8 @@ def rotations(predicted: NDArray[np.floating], true: NDArray[np.floating]) -> Ar
 
     The rotation that fits best (Kabsch 1976); its angle from the trace.
     """
-    a, b = (np.asarray(x, np.float64) - x.mean(axis=-2, keepdims=True) for x in (predicted, true))
-    u, _, vt = np.linalg.svd(np.swapaxes(a, -1, -2) @ b)
-    flip = np.sign(np.linalg.det(u @ vt))
-    u[..., -1] *= flip[..., None]
-    turn = u @ vt
+    local = np.asarray(true, np.float64)
+    turn, _ = fit_rotation(predicted, local - local.mean(axis=-2, keepdims=True))
     # Twice the sine is the norm of the antisymmetric part; the trace alone is blind near 0.
     axis = [turn[..., i, j] - turn[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0))]
     sine = np.linalg.norm(np.stack(axis), axis=0)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.learn.common.model import Designs
-from simulearn.learn.equilibrium.prediction import Prediction
+from simulearn.learn.equilibrium.parameters import Prediction
 
 if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch

@@ -122,6 +122,35 @@ class Parameters(NamedTuple):
     stress: NetworkWeights | None = None
 
 
+class Prediction(NamedTuple):
+    """Frames of a design, or of designs stacked along T: F all of them, or the last alone.
+
+    Attributes:
+        joints: (F, J, 8, 3) corners, mm.
+        sections: (F, B, 3, 4, 3) corners, mm.
+        stress: (F, B, 4, 4, 6) MPa, or None if there is no network for it.
+        motion: () the last motion of an iteration, mm; large if there is no equilibrium.
+        apart: () mean distance between the joints of the first shape and the last, last frame, mm.
+        sag: () mean motion of the joints in creep, first shape, mm.
+        strain: () root of the mean square turn of the halves from rest, last frame, rad.
+        stable: () whether the last frame is stable, or None where it is not known.
+        left_balance: () whether an unstable equilibrium was left, so that a mirrored shape exists,
+            or None where it is not known.
+        snaps: sudden motions of each design, or None where they are not known.
+    """
+
+    joints: Any
+    sections: Any
+    stress: Any
+    motion: Any
+    apart: Any
+    sag: Any
+    strain: Any
+    stable: Any = None
+    left_balance: Any = None
+    snaps: Any = None
+
+
 STORED = {"section_model": "law"}  # names in the files of bundles, where they differ
 
 SECTION_SHAPES = SectionModel(

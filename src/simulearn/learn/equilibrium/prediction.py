@@ -5,13 +5,11 @@ and predicts how rest, stiffness and sections differ; with that the grid is brou
 once more. Nothing can come apart, and frame 0 is the design.
 """
 
-from typing import NamedTuple
-
 import jax
 import jax.numpy as jnp
 
 from simulearn.learn.equilibrium import corrector, stresses
-from simulearn.learn.equilibrium.parameters import NetworkWeights, Parameters
+from simulearn.learn.equilibrium.parameters import NetworkWeights, Parameters, Prediction
 from simulearn.material import Material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.equilibrium import solve_equilibrium
@@ -23,28 +21,6 @@ from simulearn.mechanics.topology import FlatGeometry, Topology
 TOLERANCE = 0.05  # mm, of the last motion; what is left after it is far less
 MOST = 25  # iterations
 STOPS = (4, 9, 10)  # of frames 1 to 11, on the way to the last alone
-
-
-class Prediction(NamedTuple):
-    """Frames 1 to 11, or the last alone, stacked.
-
-    Attributes:
-        joints: (11, J, 8, 3) corners, mm.
-        sections: (11, B, 3, 4, 3) corners, mm.
-        stress: (11, B, 4, 4, 6) MPa, or None if there is no network for it.
-        motion: () the last motion of an iteration, mm; large if there is no equilibrium.
-        apart: () mean distance between the joints of the first shape and the last, last frame, mm.
-        sag: () mean motion of the joints in creep, first shape, mm.
-        strain: () root of the mean square turn of the halves from rest, last frame, rad.
-    """
-
-    joints: Array
-    sections: Array
-    stress: Array | None
-    motion: Array
-    apart: Array
-    sag: Array
-    strain: Array
 
 
 def plain(beams: int) -> corrector.Corrections:

@@ -9,10 +9,10 @@ import numpy as np
 from simulearn.compiled import double_precision
 from simulearn.dataset import Batch
 from simulearn.material import Material
-from simulearn.mechanics.corners import poses_of
 from simulearn.mechanics.forces import BeamState
 from simulearn.mechanics.poses import Array, Pose
 from simulearn.mechanics.topology import FlatGeometry, Topology, flat_geometry, topologies
+from simulearn.rigid import fit_rotation
 
 
 class TrialPoses(NamedTuple):
@@ -47,11 +47,11 @@ def trial_poses(batch: Batch, material: Material) -> TrialPoses:
         batch.joints[:, 1:].astype(np.float64),
         batch.sections[:, 1:, :, 1].astype(np.float64),
     )
-    R, p = poses_of(joints, np.asarray(geometry.corners)[:, None])
+    R, p = fit_rotation(joints, np.asarray(geometry.corners)[:, None])
     # The fixed joint stays; what of it moves is its warping.
     R[:, :, batch.fixed] = np.eye(3)
     p[:, :, batch.fixed] = np.asarray(geometry.centre)[:, None, batch.fixed]
-    Rm, pm = poses_of(sections, np.asarray(geometry.section)[:, None])
+    Rm, pm = fit_rotation(sections, np.asarray(geometry.section)[:, None])
 
     def own(R: Any, p: Any, x: Any) -> Any:
         return np.einsum("tfjik,tfjci->tfjck", R, x - p[:, :, :, None])

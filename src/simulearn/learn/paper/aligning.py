@@ -26,8 +26,8 @@ def direction(flat: Array, beams: NDArray[np.int64]) -> Array:
         flat: (T, J, 2) mm.
         beams: (B, 2) joint indices.
     """
-    way = flat[:, beams[:, 1]] - flat[:, beams[:, 0]]
-    z = way[..., 0] + 1j * way[..., 1]
+    axis = flat[:, beams[:, 1]] - flat[:, beams[:, 0]]
+    z = axis[..., 0] + 1j * axis[..., 1]
     turns = (z**4 / np.maximum(abs(z), 1e-9) ** 2).sum(axis=1)
     return np.asarray(np.angle(turns) / 4)
 

@@ -33,7 +33,7 @@ class Phase(Data):
     Attributes:
         epochs: passes over the data.
         unroll: steps that the simulator makes from a true frame on before it is judged; ten is
-            the whole first stage, and then the creep engine begins where it has come to.
+            all of the first stage, and then the creep engine begins from its end.
         noise: gamma, in parts of what has moved so far.
         batch: trials in each update of the weights.
     """

@@ -112,8 +112,8 @@ def dislocation(joints: Array, sections: Array, touch: Array, ends: Array) -> Ar
     """
     trials = joints.shape[1]
     there = (ends @ joints.reshape(len(joints), -1)).reshape(-1, 2, trials, 8, 3)
-    whole = sections.reshape(-1, trials, 3, 4, 3)
-    here = jnp.stack([whole[:, :, 0], whole[:, :, 2]], axis=1)
+    corners = sections.reshape(-1, trials, 3, 4, 3)
+    here = jnp.stack([corners[:, :, 0], corners[:, :, 2]], axis=1)
     return here - jnp.einsum("betkc,betcx->betkx", touch, there)
 
 
@@ -134,7 +134,7 @@ def loss(
         shape: their topology.
         ends: (2 B, J) incidence of the beams' ends on joints.
         weights: what counts how much.
-        unroll: steps k from a true frame on; ten is the whole first stage, and then the second
+        unroll: steps k from a true frame on; ten is all of the first stage, and then the second
             begins where the first has come to.
         key: of the noise.
     """
@@ -144,9 +144,12 @@ def loss(
     starts = jax.tree.map(lambda x: x[:STEPS:unroll][:windows], frames)
     begin = _noisy(starts, frames, weights.noise, keys[0])
     flat = jax.tree.map(_side_by_side, begin)  # windows and trials in one axis
-    many = lambda x, axis: jnp.concatenate([x] * windows, axis=axis)  # noqa: E731
+
+    def many(x: Array, axis: int) -> Array:
+        return jnp.concatenate([x] * windows, axis=axis)
+
     meet = jax.tree.map(lambda x: many(x, 1), examples.meet)
-    found = roll(model.release, flat, unroll, many(examples.ratio, 1), shape, meet)
+    predicted = roll(model.release, flat, unroll, many(examples.ratio, 1), shape, meet)
 
     # Window w, step k is frame w unroll + k + 1.
     def true(x: Array) -> Array:
@@ -157,12 +160,12 @@ def loss(
     weight = jnp.tile(examples.weight, windows)
     norm = model.release.normalisers
     size, of_stress = jax.lax.stop_gradient(norm.unit)
-    off = jax.tree.map(lambda a, b: a - b, found, wanted)
+    off = jax.tree.map(lambda a, b: a - b, predicted, wanted)
     release = _mean(off.joints / size, weight) + _mean(off.sections / size, weight)
     stress = _mean(off.stress / of_stress, weight)
 
     if unroll == STEPS:
-        before = jax.tree.map(lambda x: x[-1], found).plain
+        before = jax.tree.map(lambda x: x[-1], predicted).plain
     else:
         tenth = jax.tree.map(lambda x: x[STEPS : STEPS + 1], frames)
         noisy = _noisy(tenth, frames, weights.noise, keys[1])
@@ -174,7 +177,7 @@ def loss(
     )
 
     apart = jax.vmap(dislocation, in_axes=(0, 0, None, None))(
-        found.joints, found.sections, many(examples.touch, 2), ends
+        predicted.joints, predicted.sections, many(examples.touch, 2), ends
     )
     gaps = dislocation(crept.joints, crept.sections, examples.touch, ends)
     # Trials lie third from the end; the shares of windows and of creep are those of its frames.

@@ -151,7 +151,7 @@ def roll(
     return jax.lax.scan(step, state, None, length=steps)[1]
 
 
-def whole(
+def frames_after(
     model: Paper, first: GraphState, ratio: Array, shape: Graph, meet: Meetings
 ) -> tuple[GraphState, GraphState]:
     """Return the frames of stage 1, each array (10, N, T, n), and the one after creep."""
@@ -166,7 +166,7 @@ def _corners(
     model: Paper, first: GraphState, ratio: Array, shape: Graph, meet: Meetings
 ) -> tuple[Array, Array]:
     """Return the corners of all frames: joints (12, J, T, 24), sections (12, B, T, 36)."""
-    frames, crept = whole(model, first, ratio, shape, meet)
+    frames, crept = frames_after(model, first, ratio, shape, meet)
     return (
         jnp.concatenate([first.joints[None], frames.joints, crept.joints[None]]),
         jnp.concatenate([first.sections[None], frames.sections, crept.sections[None]]),
@@ -187,5 +187,5 @@ def _plain(sizes: Sizes) -> dict[str, Any]:
 
 def _leaves(model: Paper) -> dict[str, Any]:
     """Return the arrays of a model by name, as release.first.joint.weights.0."""
-    found, _ = jax.tree_util.tree_flatten_with_path(eqx.filter(model, eqx.is_array))
-    return {jax.tree_util.keystr(path, simple=True, separator="."): leaf for path, leaf in found}
+    named, _ = jax.tree_util.tree_flatten_with_path(eqx.filter(model, eqx.is_array))
+    return {jax.tree_util.keystr(path, simple=True, separator="."): leaf for path, leaf in named}

@@ -1,6 +1,6 @@
 """Interaction networks: Algorithm 1 of the paper, two in sequence to make an engine.
 
-The first gives every joint and beam a latent vector that tells what all others do to it; the
+The first gives every joint and beam a latent vector of what all others do to it; the
 second sees features and latents together and gives the increments to the next frame.
 
 Yang et al., SimuLearn, UIST 2020, Figures 6 and 7; after Battaglia et al., Interaction networks
@@ -143,7 +143,7 @@ class Interaction(eqx.Module):
         keys = jax.random.split(key, 4)
         beam, joint = latent
         for_beams, for_joints = sizes.interaction
-        inputs = (
+        widths = (
             normalised[0] + 2 * MODES + 2 * beam + joint,
             normalised[1] + 2 * MODES + 2 * joint + beam,
             normalised[2] + joint + for_joints,
@@ -153,12 +153,12 @@ class Interaction(eqx.Module):
         gains = (1.0, 1.0, last, last)
         self.through_joint, self.through_beam, self.joint, self.beam = (
             MLP((a, *sizes.hidden, b), sizes.activation, k, gain)
-            for a, b, k, gain in zip(inputs, outputs, keys, gains, strict=True)
+            for a, b, k, gain in zip(widths, outputs, keys, gains, strict=True)
         )
 
     def __call__(
         self,
-        seen: tuple[PairInputs, PairInputs, Array, Array],
+        inputs: tuple[PairInputs, PairInputs, Array, Array],
         latent: tuple[Array, Array],
         topology: Graph,
         meetings: Meetings,
@@ -166,21 +166,21 @@ class Interaction(eqx.Module):
         """Return the outgoing vectors of beams (B, T, n) and joints (J, T, m).
 
         Args:
-            seen: normalised pairs through joints, pairs through beams, joints and beams.
+            inputs: normalised pairs through joints, pairs through beams, joints and beams.
             latent: incoming latent vectors of beams and joints.
             topology: the pairs.
             meetings: their adjacency modes.
         """
         beams, joints = latent
         on_beams = _acted(
-            self.through_joint, topology.beams, seen[0], meetings.beams, beams, joints
+            self.through_joint, topology.beams, inputs[0], meetings.beams, beams, joints
         )
         on_joints = _acted(
-            self.through_beam, topology.joints, seen[1], meetings.joints, joints, beams
+            self.through_beam, topology.joints, inputs[1], meetings.joints, joints, beams
         )
         return (
-            self.beam(jnp.concatenate([seen[3], beams, on_beams], axis=-1)),
-            self.joint(jnp.concatenate([seen[2], joints, on_joints], axis=-1)),
+            self.beam(jnp.concatenate([inputs[3], beams, on_beams], axis=-1)),
+            self.joint(jnp.concatenate([inputs[2], joints, on_joints], axis=-1)),
         )
 
 
@@ -192,12 +192,12 @@ class DoubleInteraction(eqx.Module):
     normalisers: Normalisers
 
     def __init__(self, normalisers: Normalisers, sizes: Sizes, key: Array):
-        seen = tuple(n.size for n in normalisers[:4])
-        assert len(seen) == 4
+        inputs = tuple(n.size for n in normalisers[:4])
+        assert len(inputs) == 4
         a, b = jax.random.split(key)
         out = (len(normalisers.beam_step), len(normalisers.joint_step))
-        self.first = Interaction(seen, (0, 0), sizes.latent, sizes, a, 1.0)
-        self.second = Interaction(seen, sizes.latent, out, sizes, b, 1e-2)
+        self.first = Interaction(inputs, (0, 0), sizes.latent, sizes, a, 1.0)
+        self.second = Interaction(inputs, sizes.latent, out, sizes, b, 1e-2)
         self.normalisers = normalisers
 
     def __call__(
@@ -214,15 +214,15 @@ class DoubleInteraction(eqx.Module):
         norm = jax.lax.stop_gradient(self.normalisers)
         joints, beams = features(state, ratio, topology)
         where = centres(state.joints), centres(state.sections)
-        seen = (
+        inputs = (
             _normalised(norm.through_joint, topology.beams, beams, joints, where[1], where[0]),
             _normalised(norm.through_beam, topology.joints, joints, beams, where[0], where[1]),
             norm.joint.element(joints, where[0]),
             norm.beam.element(beams, where[1]),
         )
         none = joints[..., :0], beams[..., :0]
-        latent = self.first(seen, (none[1], none[0]), topology, meetings)
-        of_beams, of_joints = self.second(seen, latent, topology, meetings)
+        latent = self.first(inputs, (none[1], none[0]), topology, meetings)
+        of_beams, of_joints = self.second(inputs, latent, topology, meetings)
         of_beams, of_joints = of_beams @ norm.beam_step, of_joints @ norm.joint_step
         held = jnp.broadcast_to(topology.moves, (*topology.moves.shape[:3], 3))
         return GraphState(
@@ -238,7 +238,7 @@ def _incident(matrix: Array, x: Array) -> Array:
 
 
 def _acted(
-    network: MLP, pairs: Pairs, seen: PairInputs, meeting: Array, outer: Array, inner: Array
+    network: MLP, pairs: Pairs, inputs: PairInputs, meeting: Array, outer: Array, inner: Array
 ) -> Array:
     """Return the sum (S, T, K) of what acts on each receiver.
 
@@ -246,17 +246,21 @@ def _acted(
     Its first layer is linear in each of them, so it is applied to the elements, which are fewer
     than the pairs, and gathered afterwards.
     """
-    sizes = (x.shape[-1] for x in (seen.offset, meeting, outer, inner))
+    sizes = (x.shape[-1] for x in (inputs.offset, meeting, outer, inner))
     weight, bias = network.weights[0], network.biases[0]
     of_pair, of_mode, *of_latent = jnp.split(weight, list(accumulate(sizes)))
     parts = zip(
         pairs,
-        (seen.sender, seen.conduit, seen.receiver),
+        (inputs.sender, inputs.conduit, inputs.receiver),
         (outer, inner, outer),
         of_latent,
         strict=True,
     )
-    first = seen.away @ (seen.shift @ of_pair) + meeting @ of_mode + (seen.offset @ of_pair + bias)
+    first = (
+        inputs.away @ (inputs.shift @ of_pair)
+        + meeting @ of_mode
+        + (inputs.offset @ of_pair + bias)
+    )
     for incidence, element, latent, of_one in parts:
         first += _incident(incidence, element @ of_pair + latent @ of_one)
     return _incident(pairs.receiver.T, network.after_first(first))
@@ -265,7 +269,7 @@ def _acted(
 def _normalised(
     norm: Normaliser, pairs: Pairs, outer: Array, inner: Array, outers: Array, inners: Array
 ) -> PairInputs:
-    """Return pairs as seen from the centres of their conduits.
+    """Return pairs relative to the centres of their conduits.
 
     Each element contributes its part of the map from its own centre; the rest is what the
     distances of sender and receiver from the conduit add.
@@ -298,7 +302,7 @@ def _shift(part: Array, length: int) -> Array:
 
 
 def blank(
-    sizes: Sizes, seen: tuple[int, int, int, int], steps: tuple[int, int], stress: bool
+    sizes: Sizes, components: tuple[int, int, int, int], steps: tuple[int, int], stress: bool
 ) -> DoubleInteraction:
     """Return an engine of zeros with the shapes that its arrays will have."""
     edge = EDGE if stress else EDGE_PLAIN
@@ -308,7 +312,8 @@ def blank(
         return jnp.zeros(shape, jnp.float32)
 
     pairs, beams, joint, beam = (
-        Normaliser(zeros(n, k), zeros(k), zeros(3, k)) for n, k in zip(lengths, seen, strict=True)
+        Normaliser(zeros(n, k), zeros(k), zeros(3, k))
+        for n, k in zip(lengths, components, strict=True)
     )
     normalisers = Normalisers(
         pairs,

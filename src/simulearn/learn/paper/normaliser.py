@@ -2,9 +2,9 @@
 
 Elements are moved to their own centre, interaction pairs to the centre of their conduit. Each
 feature is divided by the 95th percentile of its deviation; principal components that hold 98 % of
-the variance are kept, those of geometry and of stress apart; each is scaled again. All of this
-is one affine map, and the move is another, so for a pair it can be applied to sender, conduit
-and receiver apart and then added. Yang et al., SimuLearn, UIST 2020, data normalization.
+the variance are used, those of geometry and of stress apart; each is scaled again. Together these
+are one affine map, and the move is another, so for a pair it can be applied to sender, conduit and
+receiver apart and then added. Yang et al., SimuLearn, UIST 2020, data normalization.
 """
 
 from collections.abc import Sequence
@@ -40,24 +40,24 @@ class Normaliser(NamedTuple):
         return int(self.offset.shape[0])
 
     def element(self, x: Array, centre: Array) -> Array:
-        """Return the components (..., K) of elements (..., N) seen from their centres (..., 3)."""
+        """Return the components (..., K) of elements (..., N), relative to centres (..., 3)."""
         return x @ self.matrix + self.offset - centre @ self.shift
 
 
 def placed(length: int) -> NDArray[np.float64]:
     """Return (3, N): what moving an element by 1 mm along x, y and z adds to its features."""
     points = 1 + (24 if length == NODE else 36) // 3  # its centre and its corners
-    whole = np.zeros((3, length))
-    whole[:, : 3 * points] = np.tile(np.eye(3), points)
-    return whole
+    block = np.zeros((3, length))
+    block[:, : 3 * points] = np.tile(np.eye(3), points)
+    return block
 
 
 def is_stress(length: int) -> NDArray[np.bool_]:
     """Return which features (N,) of an element are stresses."""
-    found = np.zeros(length, bool)
+    stress = np.zeros(length, bool)
     if length > EDGE_PLAIN:
-        found[STRESS] = True
-    return found
+        stress[STRESS] = True
+    return stress
 
 
 def fit(x: NDArray[np.floating], lengths: tuple[int, ...], variance: Sequence[float]) -> Normaliser:
@@ -83,11 +83,11 @@ def fit(x: NDArray[np.floating], lengths: tuple[int, ...], variance: Sequence[fl
         values, vectors = np.linalg.eigh(np.cov(((x - mean) * scale)[:, group].T))
         values, vectors = values[::-1].clip(0), vectors[:, ::-1]
         held = np.cumsum(values) / values.sum()
-        kept = 1 + int(np.searchsorted(held, least))
-        kept = min(kept, int((values > 1e-12 * values[0]).sum()))
-        whole = np.zeros((len(scale), kept))
-        whole[group] = vectors[:, :kept] / np.sqrt(values[:kept])
-        columns.append(whole)
+        count = 1 + int(np.searchsorted(held, least))
+        count = min(count, int((values > 1e-12 * values[0]).sum()))
+        block = np.zeros((len(scale), count))
+        block[group] = vectors[:, :count] / np.sqrt(values[:count])
+        columns.append(block)
     matrix = scale[:, None] * np.concatenate(columns, axis=1)
     shift = np.concatenate([placed(n) for n in lengths], axis=1) @ matrix
     return Normaliser(*(jnp.asarray(a, jnp.float32) for a in (matrix, -mean @ matrix, shift)))

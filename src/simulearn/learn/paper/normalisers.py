@@ -49,7 +49,7 @@ def _stage(
     batches: Sequence[Batch], frames: slice, stress: bool, variance: Sequence[float]
 ) -> Normalisers:
     """Return the normalisers of a stage; its last frame is only stepped to."""
-    seen: list[list[Features]] = [[], [], [], []]
+    examples: list[list[Features]] = [[], [], [], []]
     steps: tuple[list[Features], list[Features]] = ([], [])
     for batch in batches:
         shape = graph_of(batch.beams, batch.flat.shape[1], batch.fixed)
@@ -60,15 +60,15 @@ def _stage(
         moved = _steps(beams)[..., 3 : 135 if stress else 39]
         steps[1].append(moved.reshape(-1, moved.shape[-1]))
         now = joints[:, :, :-1], beams[:, :, :-1]
-        seen[0].append(_moved(shape.beams, now[1], now[0]))
-        seen[1].append(_moved(shape.joints, now[0], now[1]))
+        examples[0].append(_moved(shape.beams, now[1], now[0]))
+        examples[1].append(_moved(shape.joints, now[0], now[1]))
         for k, x in zip((2, 3), now, strict=True):
             local = x - x[..., :3] @ placed(x.shape[-1]).astype(x.dtype)
-            seen[k].append(local.reshape(-1, x.shape[-1]))
-    node, edge = (seen[k][0].shape[-1] for k in (2, 3))
+            examples[k].append(local.reshape(-1, x.shape[-1]))
+    node, edge = (examples[k][0].shape[-1] for k in (2, 3))
     lengths = ((edge, node, edge), (node, edge, node), (node,), (edge,))
     pairs, through_beam, joint, beam = (
-        fit(np.concatenate(x), n, variance) for x, n in zip(seen, lengths, strict=True)
+        fit(np.concatenate(x), n, variance) for x, n in zip(examples, lengths, strict=True)
     )
     moves = [np.concatenate(x).astype(np.float64) for x in steps]
     unit = [np.sqrt((x**2).mean()) if x.size else 1.0 for x in (moves[1][:, :36], moves[1][:, 36:])]
@@ -95,8 +95,8 @@ def _moved(pairs: Pairs, outer: Features, inner: Features) -> Features:
         x - origin @ placed(x.shape[-1]).astype(x.dtype)
         for x in (outer[sender], inner[conduit], outer[receiver])
     ]
-    whole = np.concatenate(parts, axis=-1)
-    return whole.reshape(-1, whole.shape[-1])
+    joined = np.concatenate(parts, axis=-1)
+    return joined.reshape(-1, joined.shape[-1])
 
 
 def _spread(moves: NDArray[np.float64]) -> Array:
@@ -112,8 +112,8 @@ def _spread(moves: NDArray[np.float64]) -> Array:
             continue
         values, vectors = np.linalg.eigh(part.T @ part / len(part))
         values, vectors = values[::-1].clip(0), vectors[:, ::-1]
-        kept = 1 + int(np.searchsorted(np.cumsum(values) / values.sum(), STEPS_HELD))
-        whole = np.zeros((min(kept, len(values)), moves.shape[1]))
-        whole[:, group] = (vectors * np.sqrt(values)).T[:kept]
-        rows.append(whole)
+        count = 1 + int(np.searchsorted(np.cumsum(values) / values.sum(), STEPS_HELD))
+        components = np.zeros((min(count, len(values)), moves.shape[1]))
+        components[:, group] = (vectors * np.sqrt(values)).T[:count]
+        rows.append(components)
     return jnp.asarray(np.concatenate(rows), jnp.float32)

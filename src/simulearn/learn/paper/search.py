@@ -1,7 +1,7 @@
 """Searching the hyperparameters of the paper's Figure 9: noise, penalty and size of the data.
 
 Each run is a short training with the phases of the configuration; which combination is tried next
-is decided by Optuna from those before, and none is tried twice. The runs are kept, so a search
+is decided by Optuna from those before, and none is tried twice. The runs are saved, so a search
 goes on where it was stopped.
 """
 
@@ -40,7 +40,7 @@ def search(
     Args:
         config: of each run, but for noise and penalty; its trials are the most.
         data: to learn from.
-        folder: where search.json and search.csv are kept; it exists.
+        folder: where search.json and search.csv are written; it exists.
         runs: how many in all; at most as many as there are combinations.
         progress: called with (runs done, runs in all).
 
@@ -54,14 +54,14 @@ def search(
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     identity = fingerprint(config, data)
     file = folder / "search.json"
-    kept: list[dict[str, Any]] = []
+    rows: list[dict[str, Any]] = []
     if file.exists():
-        told = json.loads(read_text(file))
-        if told.get("identity") != identity:
+        saved = json.loads(read_text(file))
+        if saved.get("identity") != identity:
             raise InputError(f"{file}: is of another search; name another folder")
-        kept = told["runs"]
-    whole = config.trials or sum(int((~b.test).sum()) for b in data.batches)
-    sizes = sorted({max(2 * config.validation, round(share * whole)) for share in SHARES})
+        rows = saved["runs"]
+    available = config.trials or sum(int((~b.test).sum()) for b in data.batches)
+    sizes = sorted({max(2 * config.validation, round(share * available)) for share in SHARES})
     space: dict[str, optuna.distributions.BaseDistribution] = {
         "noise": optuna.distributions.CategoricalDistribution(NOISE),
         "penalty": optuna.distributions.CategoricalDistribution(PENALTY),
@@ -77,25 +77,25 @@ def search(
         )
 
     study = optuna.create_study(sampler=optuna.samplers.TPESampler(seed=config.seed))
-    for row in kept:
+    for row in rows:
         study.add_trial(known(row))
-    progress(len(kept), runs)
-    for k in range(len(kept), runs):
+    progress(len(rows), runs)
+    for k in range(len(rows), runs):
         # A sampler of its own for each run, so that a search that was stopped goes on the same.
         study.sampler = optuna.samplers.TPESampler(seed=config.seed + k)
-        tried = [{name: row[name] for name in space} for row in kept]
+        tried = [{name: row[name] for name in space} for row in rows]
         left = [c for c in combinations if c not in tried]
         if not left:
             break
-        asked = study.ask(space).params
-        if asked not in left:  # measured once is enough
-            asked = left[np.random.default_rng([config.seed, k]).integers(len(left))]
-        row = _measured(_varied(config, **asked), data)
-        kept.append({**asked, **row})
-        study.add_trial(known(kept[-1]))
-        write(identity, kept, folder)
+        values = study.ask(space).params
+        if values not in left:  # measured once is enough
+            values = left[np.random.default_rng([config.seed, k]).integers(len(left))]
+        row = _measured(_varied(config, **values), data)
+        rows.append({**values, **row})
+        study.add_trial(known(rows[-1]))
+        write(identity, rows, folder)
         progress(k + 1, runs)
-    return write(identity, kept, folder)
+    return write(identity, rows, folder)
 
 
 def write(identity: str, runs: list[dict[str, Any]], folder: Path) -> dict[str, Any]:
@@ -119,8 +119,8 @@ def _measured(config: PaperConfig, data: Dataset) -> dict[str, float]:
     """Return the figures of one run, on the trials it sets aside."""
     model, _ = train(config, data)
     aside = split(config, data)[1]
-    found = together([errors(model.rollout(designs_of(b)), b) for b in aside])
+    figures = together([errors(model.rollout(designs_of(b)), b) for b in aside])
     return {
-        "validation_percent": float(np.mean(found.percent[:, -1])),
-        "gap_mm": float(np.mean(found.gap[:, -1])),
+        "validation_percent": float(np.mean(figures.percent[:, -1])),
+        "gap_mm": float(np.mean(figures.gap[:, -1])),
     }

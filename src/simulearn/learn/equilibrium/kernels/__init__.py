@@ -1,0 +1,1 @@
+"""Native kernels of the networks: features, layers, outputs, stresses."""

@@ -1,0 +1,264 @@
+"""Predictions by native kernels: any topology without compilation, a design after the other.
+
+Many designs are shared among threads in small portions, so that a core that is busy otherwise
+takes fewer of them. What a design gives does not depend on the others.
+"""
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.files import cores
+from simulearn.grid.outline import corner_topology
+from simulearn.learn.common.model import Designs
+from simulearn.learn.equilibrium.kernels.network import Layers, outputs
+from simulearn.learn.equilibrium.kernels.stress import stress_in_space
+from simulearn.learn.equilibrium.parameters import (
+    CORRECTIONS,
+    FACE,
+    MIDDLE,
+    REST,
+    STRESSES,
+    TWIST_FLIP,
+    TWIST_SIZE,
+    VALUES_MIRROR,
+    Heads,
+    NetworkWeights,
+    Parameters,
+    Prediction,
+)
+from simulearn.material import Material
+from simulearn.mechanics.kernels.geometry import set_corners
+from simulearn.mechanics.model import REFERENCE_WIDTH
+from simulearn.mechanics.path import (
+    TOLERANCE,
+    Grid,
+    Path,
+    coefficients,
+    grid_of,
+    schedule_frames,
+    trace,
+)
+from simulearn.schedule import FRAMES, Snap
+
+Numbers = NDArray[np.float64]
+
+STOPS = np.array([0, 2, 4, 6, 8, 10, 11])  # frames on the way to the last alone
+PORTIONS = 8  # that each core's share of a batch is divided into, at least
+ASIDE = 4.0  # mm between first shape and last beyond which frame by frame is followed
+
+
+class Networks(NamedTuple):
+    """A model's parameters as the kernels take them; one for all designs."""
+
+    section: Numbers
+    corrections: Layers | None
+    stress: Layers | None
+    scale: float
+
+
+def networks_of(parameters: Parameters, material: Material) -> Networks:
+    """Return a model's parameters as the kernels take them."""
+    scale = material.section.width / REFERENCE_WIDTH
+    lengths = np.ones(len(CORRECTIONS.size))
+    lengths[REST][:3] = lengths[FACE] = lengths[MIDDLE] = scale
+    corrections, stress = parameters.network, parameters.stress
+    return Networks(
+        coefficients(parameters.section_model),
+        None if corrections is None else _layers(corrections, CORRECTIONS, lengths, scale),
+        None if stress is None else _layers(stress, STRESSES, 1.0, scale),
+        scale,
+    )
+
+
+def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) -> Layers:
+    def stacked(k: int, part: int) -> NDArray[np.float32]:
+        return np.stack([np.asarray(layers[k][part], np.float32) for layers in weights.rounds])
+
+    def single(x: Any) -> NDArray[np.float32]:
+        return np.ascontiguousarray(x, np.float32)
+
+    (first, second), (third, last) = weights.encode, weights.decode
+    return Layers(
+        *map(single, (*first, *second)),
+        stacked(0, 0), stacked(0, 1), stacked(1, 0), stacked(1, 1),
+        *map(single, (*third, *last)),
+        single(VALUES_MIRROR),
+        heads.mirror[0].astype(np.int64), single(heads.mirror[1]),
+        heads.flip[0].astype(np.int64), single(heads.flip[1]),
+        np.asarray(heads.size * factor, np.float64),
+        TWIST_SIZE * np.where(np.arange(6) < 3, scale, 1.0),
+        np.asarray(TWIST_FLIP, np.float64),
+    )  # fmt: skip
+
+
+def predict(
+    parameters: Parameters,
+    material: Material,
+    designs: Designs,
+    last: bool = False,
+    tolerance: float = TOLERANCE,
+    networks: Networks | None = None,
+) -> Prediction:
+    """Return all twelve frames of designs of one topology, stacked along T, or the last alone.
+
+    Args:
+        parameters: fitted.
+        material: that they were fitted to.
+        designs: T of them.
+        last: whether only the last frame is needed.
+        tolerance: of the last motion of an iteration, mm.
+        networks: the parameters as the kernels take them, where they are at hand.
+    """
+    networks = networks or networks_of(parameters, material)
+    count, joints, beams = len(designs), designs.flat.shape[1], len(designs.beams)
+    frames = 1 if last else FRAMES
+    stress = None if last or networks.stress is None else np.empty((count, frames, beams, 4, 4, 6))
+    out = Prediction(
+        np.empty((count, frames, joints, 8, 3)),
+        np.empty((count, frames, beams, 3, 4, 3)),
+        stress,
+        *np.full((4, count), np.inf),
+        stable=np.zeros(count, np.bool_),
+        left_balance=np.zeros(count, np.bool_),
+        snaps=[() for _ in range(count)],
+    )
+    corners = corner_topology(designs.beams, designs.flat)
+
+    def run(some: range) -> None:
+        for t in some:
+            own = tuple(x[t] for x in corners)
+            grid = grid_of(
+                designs.beams, designs.fixed, designs.flat[t], designs.actuators[t], own,
+                networks.section, material,
+            )  # fmt: skip
+            _predict(networks, material, grid, last, tolerance, out, t)
+
+    size = max(1, count // (PORTIONS * cores()))
+    parts = [range(a, min(a + size, count)) for a in range(0, count, size)]
+    if len(parts) > 1 and cores() > 1:
+        with ThreadPoolExecutor(min(cores(), len(parts))) as pool:
+            list(pool.map(run, parts))
+    else:
+        for part in parts:
+            run(part)
+    return out
+
+
+def _predict(
+    networks: Networks,
+    material: Material,
+    grid: Grid,
+    last: bool,
+    tolerance: float,
+    out: Prediction,
+    t: int,
+) -> None:
+    """Set the prediction of a design."""
+    beams = len(grid.ratio)
+    which = STOPS if last else slice(None)
+    frames = schedule_frames(beams, material, which=which)
+    first = trace(grid, frames, small_steps=not last, tolerance=tolerance)
+    final, warping = first, np.zeros((len(frames.released), 2, beams, 24))
+    begin = len(frames.released) - 1 if last else 1
+    valence = np.bincount(grid.layout.ends.ravel(), minlength=len(grid.plan.area)).astype(float)
+
+    def output(layers: Layers, path: Path, begin: int) -> Numbers:
+        values = np.zeros((len(frames.released), 2, beams, len(layers.size)))
+        outputs(
+            layers, grid.plan, grid.layout.ends, grid.layout.fixed, grid.ratio, valence, path.R,
+            path.twists, frames.released, frames.gravity, networks.scale, begin, values,
+        )  # fmt: skip
+        return values
+
+    if networks.corrections is not None and first.ended:
+        values = output(networks.corrections, first, begin)
+        corrections = np.ascontiguousarray(values[..., :12])
+        warping = np.ascontiguousarray(values[..., 12:])
+        if last:
+            final = _last_corrected(grid, frames, corrections, first, tolerance)
+        else:
+            corrected = frames._replace(corrections=corrections, corrected=True)
+            final = trace(grid, corrected, first, tolerance=tolerance)
+    if last and not (first.ended and final.ended):  # frame by frame more converge
+        whole = Prediction(
+            np.empty((1, FRAMES, *out.joints.shape[2:])),
+            np.empty((1, FRAMES, *out.sections.shape[2:])),
+            None, *np.full((4, 1), np.inf), stable=np.zeros(1, np.bool_),
+            left_balance=np.zeros(1, np.bool_), snaps=[()],
+        )  # fmt: skip
+        _predict(networks, material, grid, False, tolerance, whole, 0)
+        for to, value in zip(out, whole, strict=True):
+            if value is not None:
+                to[t] = value[0][-1:] if np.ndim(value[0]) > 1 else value[0]
+        return
+    joints = np.empty((len(frames.released), *out.joints.shape[2:]))
+    sections = np.empty((len(frames.released), *out.sections.shape[2:]))
+    if not (first.ended and final.ended):
+        out.joints[t], out.sections[t] = np.nan, np.nan
+        if out.stress is not None:
+            out.stress[t] = np.nan
+        return
+    set_corners(
+        grid.plan, grid.section, grid.layout.ends, grid.layout.fixed, grid.side, frames.released,
+        warping, final.R, final.p, begin if last else 0, joints, sections,
+    )  # fmt: skip
+    out.joints[t], out.sections[t] = (x[-1:] if last else x for x in (joints, sections))
+    if out.stress is not None and networks.stress is not None:
+        shrinkage = material.shrinkage
+        stress_in_space(
+            output(networks.stress, final, 1), grid.plan, grid.layout.ends, grid.ratio, final.R,
+            frames.released, shrinkage.stress_active, shrinkage.stress_passive, 0, out.stress[t],
+        )  # fmt: skip
+    many = len(grid.plan.area)
+    apart = final.p[-1, :many] - first.p[-1, :many]
+    sag = first.p[-1, :many] - first.p[-2, :many]
+    out.motion[t] = max(first.motion, final.motion)
+    out.apart[t] = np.linalg.norm(apart, axis=-1).mean()
+    out.sag[t] = np.linalg.norm(sag, axis=-1).mean()
+    out.strain[t] = np.sqrt((first.twists[-1, ..., 3:] ** 2).sum(-1).mean())
+    out.stable[t] = True
+    out.left_balance[t] = final.left_balance
+    out.snaps[t] = tuple(final.snaps)
+
+
+def _last_corrected(
+    grid: Grid, frames: Any, corrections: Numbers, first: Path, tolerance: float
+) -> Path:
+    """Return the path whose last frame is in corrected equilibrium, near the first shape."""
+    ends = np.array([0, len(frames.released) - 1])
+    two = frames._replace(
+        released=frames.released[ends],
+        gravity=frames.gravity[ends],
+        order=np.zeros(2, np.int64),
+        corrections=np.ascontiguousarray(corrections[ends]),
+        corrected=True,
+    )
+    guide = Path(
+        first.R[ends],
+        first.p[ends],
+        first.info[ends],
+        first.twists[ends],
+        jumped=np.zeros(2, np.bool_),
+    )
+    found = trace(grid, two, guide, small_steps=False, tolerance=tolerance)
+    away = np.linalg.norm(found.p[-1] - first.p[-1], axis=-1).max()
+    found.ended &= bool(away < ASIDE)
+
+    def spread(x: Any, y: Any) -> Any:
+        full = x.copy()
+        full[-1] = y[-1]
+        return full
+
+    return Path(
+        spread(first.R, found.R),
+        spread(first.p, found.p),
+        spread(first.info, found.info),
+        spread(first.twists, found.twists),
+        ended=found.ended,
+    )
+
+
+__all__ = ["Networks", "Snap", "networks_of", "predict"]

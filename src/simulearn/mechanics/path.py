@@ -1,0 +1,325 @@
+"""The frames of a grid by native beam mechanics, through snaps where there are any.
+
+Frame after frame is found by `kernels.path.follow`. Where one is not plain (no equilibrium is near,
+it is unstable, or far from where the path leads) it is followed in small steps from the frame
+before. Where a small step finds no stable equilibrium near, the grid descends to the next one under
+the same load, as it would in the viscous bath: a snap. An unstable equilibrium is left along its
+softest mode.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.material import Material
+from simulearn.mechanics.kernels.assembly import Layout
+from simulearn.mechanics.kernels.geometry import Plan, set_plan
+from simulearn.mechanics.kernels.path import (
+    ASTRAY,
+    INFO,
+    MOTION,
+    MOVED,
+    NEGATIVE,
+    WIDEST,
+    Frames,
+    follow,
+)
+from simulearn.mechanics.model import SectionModel
+from simulearn.mechanics.ordering import layout_of
+from simulearn.schedule import SCHEDULE, Snap
+
+Numbers = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+TOLERANCE = 1e-6  # mm, of the last motion of an iteration
+MOST = 60  # factorisations in a frame
+DESCENT = 600  # the same in a descent
+EXPECTED = 4.0  # mm from where the path leads, beyond which a frame is followed in small steps
+JUMP = 12.0  # mm, the same where the path does not lead on: gravity changes
+SMALLEST = 1 / 32  # of a frame, the smallest step
+ALLOWED = 1.0  # mm that a small step may move more than twice what the step before did
+SNAP = 0.02  # of the grid's dimension: the least motion that is a snap
+SHOVE = 0.1  # mm along the softest mode
+TURN = 3.0  # rad, by which a half-beam bends at most
+
+
+class Grid(NamedTuple):
+    """A grid as the kernels take it.
+
+    Attributes:
+        layout: its topology.
+        plan: the flat grid in numbers.
+        side: (2, B) side of its joint that each half leaves.
+        ratio: (B,) signed actuator ratios.
+        section: coefficients of the section model.
+        load: body force N/mm3, section mm2, thickness mm.
+    """
+
+    layout: Layout
+    plan: Plan
+    side: Indices
+    ratio: Numbers
+    section: Numbers
+    load: Numbers
+
+    @property
+    def count(self) -> int:
+        """Number of joints and middles."""
+        return len(self.plan.area) + len(self.ratio)
+
+    @property
+    def dimension(self) -> float:
+        """Largest distance of a joint from the fixed one, mm."""
+        away = self.plan.centre - self.plan.centre[self.layout.fixed]
+        return float(np.linalg.norm(away, axis=1).max())
+
+
+@dataclass
+class Path:
+    """The states of all frames.
+
+    Attributes:
+        R, p: (F, J + B, 9), (F, J + B, 3) poses of joints, then middles; frame 0 is flat.
+        info: (F, INFO) see `kernels.path`.
+        twists: (F, 2, B, 6) of halves from the rest that the section model has.
+        snaps: in the order in which they happen.
+        left_balance: whether an unstable equilibrium was left, so that a mirrored shape exists.
+        ended: whether every frame has a stable equilibrium.
+        plain: whether no frame had to be followed in small steps.
+        jumped: (F,) whether a frame is beyond a snap that the frame before is not.
+    """
+
+    R: Numbers
+    p: Numbers
+    info: Numbers
+    twists: Numbers
+    snaps: list[Snap] = field(default_factory=list)
+    left_balance: bool = False
+    ended: bool = True
+    plain: bool = True
+    jumped: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
+
+    @property
+    def motion(self) -> float:
+        """The last motion of an iteration, largest of all frames, mm."""
+        return float(self.info[1:, MOTION].max()) if self.ended else np.inf
+
+
+def coefficients(section_model: SectionModel) -> Numbers:
+    """Return the coefficients of a section model in one array, as the kernels take them."""
+    return np.concatenate([np.ravel(np.asarray(x, np.float64)) for x in section_model])
+
+
+def load_of(material: Material) -> Numbers:
+    """Return body force N/mm3, section mm2 and thickness mm."""
+    section = material.section
+    body = material.gravity.body_force
+    return np.array([body, section.width * section.thickness, section.thickness])
+
+
+def grid_of(
+    beams: Indices,
+    fixed: int,
+    joints: Numbers,
+    ratio: Numbers,
+    corners: tuple[Indices, ...],
+    section: Numbers,
+    material: Material,
+) -> Grid:
+    """Return a design as the kernels take it.
+
+    Args:
+        beams: (B, 2) joint indices.
+        fixed: index of the fixed joint.
+        joints: (J, 2) mm.
+        ratio: (B,) signed actuator ratios.
+        corners: before, after, parts, part (J, 4) and side (2, B); see `grid.outline`.
+        section: see `coefficients`.
+        material: the material system.
+    """
+    layout = layout_of(beams, fixed, len(joints))
+    count, many = len(joints), len(beams)
+    plan = Plan(
+        np.zeros((count, 3)), np.zeros((count, 8, 3)), np.zeros(count), np.zeros((2, many, 3)),
+        np.zeros((2, many, 9)), np.zeros((2, many)), np.zeros((2, many)), np.zeros(many),
+        np.zeros((many, 3)), np.zeros((many, 4, 3)),
+    )  # fmt: skip
+    own = [np.ascontiguousarray(x, np.int64) for x in corners]
+    set_plan(
+        plan, np.ascontiguousarray(joints, np.float64), layout.ends, *own,
+        material.section.width, material.section.thickness,
+    )  # fmt: skip
+    ratio = np.ascontiguousarray(ratio, np.float64)
+    return Grid(layout, plan, own[4], ratio, section, load_of(material))
+
+
+def schedule_frames(
+    beams: int, material: Material, corrections: Numbers | None = None, which: Any = slice(None)
+) -> Frames:
+    """Return what acts in the frames of a simulation, or in some of them.
+
+    Args:
+        beams: how many there are.
+        material: for its creep.
+        corrections: (F, 2, B, 12) see `kernels.path.Frames`.
+        which: index over the twelve frames, the flat one first.
+    """
+    released = np.array(SCHEDULE.released)[which]
+    gravity = np.array(SCHEDULE.gravity(material.creep.amplitude))[which]
+    count = len(released)
+    order = np.clip(np.arange(count) - 2, 0, 2)
+    order[-1] = 0
+    if corrections is None:
+        return Frames(released, gravity, order, np.zeros((count, 2, beams, 12)), False)
+    return Frames(released, gravity, order, corrections, True)
+
+
+def trace(
+    grid: Grid,
+    frames: Frames,
+    guide: Path | None = None,
+    small_steps: bool = True,
+    tolerance: float = TOLERANCE,
+) -> Path:
+    """Return the states of frames.
+
+    Args:
+        grid: the design.
+        frames: what acts in each.
+        guide: states near which those of the frames are expected, where it has no snap.
+        small_steps: whether a frame that is not plain is followed in small steps; if not, the path
+            ends there.
+        tolerance: of the last motion of an iteration, mm.
+    """
+    count, nodes, joints = len(frames.released), grid.count, len(grid.plan.area)
+    path = Path(
+        np.empty((count, nodes, 9)),
+        np.empty((count, nodes, 3)),
+        np.zeros((count, INFO)),
+        np.zeros((count, 2, len(grid.ratio), 6)),
+        jumped=np.zeros(count, np.bool_),
+    )
+    path.R[0, :joints] = np.eye(3).ravel()
+    path.R[0, joints:] = grid.plan.frame[0]
+    path.p[0, :joints], path.p[0, joints:] = grid.plan.centre, grid.plan.middle
+    order = frames.order.copy()
+    guided = np.zeros(count, np.bool_)
+    if guide is not None:
+        guided[:] = ~guide.jumped
+        guided[1:] &= ~guide.jumped[:-1]
+    far = np.where(guided | (order > 0), EXPECTED, JUMP)
+    if len(far) > 1:
+        far[1] = np.inf  # a grid that hangs down may go far at once
+    k = 1
+    while k < count:
+        k = _follow(grid, frames._replace(order=order), guide, guided, k, far, path, tolerance)
+        if k == count:
+            break
+        path.plain = False
+        if not small_steps or not _small_steps(grid, frames, k, path, tolerance):
+            path.ended = False
+            break
+        if path.jumped[k]:  # the path before tells nothing of what follows
+            order[k + 1 : k + 4] = np.minimum(order[k + 1 : k + 4], [0, 1, 2][: count - k - 1])
+            guided[k + 1 : k + 3] = False
+            far[k + 1 : k + 2] = JUMP
+        k += 1
+    if path.ended and not path.info[1:, WIDEST].max() < TURN**2:
+        path.ended = False
+    return path
+
+
+def _follow(
+    grid: Grid,
+    frames: Frames,
+    guide: Path | None,
+    guided: NDArray[np.bool_],
+    begin: int,
+    far: Numbers,
+    path: Path,
+    tolerance: float,
+    near: bool = False,
+    descend: bool = False,
+    shove: float = 0.0,
+) -> int:
+    """Call the kernel; return the first frame that is not plain."""
+    along = path if guide is None else guide
+    return int(
+        follow(
+            grid.layout, grid.plan, grid.section, grid.load, grid.ratio, frames,
+            along.R, along.p, guided, begin, near, descend, shove, tolerance,
+            DESCENT if descend else MOST, far, path.R, path.p, path.info, path.twists,
+        )
+    )  # fmt: skip
+
+
+def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: float) -> bool:
+    """Follow a frame in small steps from the one before; return whether it was reached."""
+    before = path.info[k - 1, MOVED] if k > 1 else np.inf
+    rate = before if np.isfinite(before) else 0.0  # mm per frame
+    at, step = 0.0, 0.25
+    short = Path(
+        np.stack([path.R[k - 1]] * 2),
+        np.stack([path.p[k - 1]] * 2),
+        np.zeros((2, INFO)),
+        np.zeros((2, 2, len(grid.ratio), 6)),
+    )
+    unguided, anywhere = np.zeros(2, np.bool_), np.full(2, np.inf)
+    while at < 1:
+        to = min(1.0, at + step)
+        now = _between(frames, k, to)
+        near = k > 1 or at > 0
+
+        def find(descend: bool = False, shove: float = 0.0, now: Any = now, near: Any = near) -> bool:
+            done = _follow(
+                grid, now, None, unguided, 1, anywhere, short, tolerance, near, descend, shove
+            )
+            return done == 2
+
+        found = find()
+        moved = float(short.info[1, MOVED])
+        allowed = ALLOWED + 2 * rate * (to - at)
+        if not found or not moved <= allowed:
+            if step > SMALLEST:
+                step /= 2
+                continue
+            # No equilibrium that is stable is near: along the softest mode, and down.
+            unstable = short.info[1, MOTION] <= tolerance and short.info[1, NEGATIVE] > 0
+            balanced = bool(unstable and moved <= allowed)
+            if balanced:
+                short.R[0], short.p[0] = short.R[1], short.p[1]
+            if not find(True, SHOVE if balanced else 0.0) and not find(True, SHOVE):
+                return False
+            path.left_balance |= balanced
+            moved = float(short.info[1, MOVED])
+            if moved > SNAP * grid.dimension:
+                begun = frames.released[k - 1]
+                middle = (at + to) / 2
+                path.snaps.append(Snap(float(begun + middle * (frames.released[k] - begun)), k))
+                path.jumped[k] = True
+            moved = 0.0
+        rate = moved / (to - at) if moved > 0 else rate
+        short.R[0], short.p[0] = short.R[1], short.p[1]
+        at, step = to, min(2 * step, 0.25)
+    path.R[k], path.p[k] = short.R[1], short.p[1]
+    path.info[k], path.twists[k] = short.info[1], short.twists[1]
+    path.info[k, MOVED] = np.linalg.norm(path.p[k] - path.p[k - 1], axis=1).max()
+    path.info[k, ASTRAY] = 0.0
+    return True
+
+
+def _between(frames: Frames, k: int, part: float) -> Frames:
+    """Return what acts between two frames, all linear in between, as the second of two frames."""
+
+    def mixed(x: Numbers) -> Numbers:
+        return np.stack([x[k - 1], (1 - part) * x[k - 1] + part * x[k]])
+
+    return Frames(
+        mixed(frames.released),
+        mixed(frames.gravity),
+        np.zeros(2, np.int64),
+        mixed(frames.corrections),
+        frames.corrected,
+    )

@@ -1,0 +1,181 @@
+"""Files that are written completely or not at all, and read within bounds."""
+
+import errno
+import os
+import stat
+import sys
+
+import pytest
+
+from simulearn.errors import InputError
+from simulearn.files import read_text, replacing
+
+posix = pytest.mark.skipif(os.name != "posix", reason="modes and links of POSIX")
+user = pytest.mark.skipif(
+    not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere"
+)
+
+
+def write(path, text="new"):
+    with replacing(path) as temporary:
+        temporary.write_text(text)
+
+
+def test_a_file_is_replaced_when_it_is_complete(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+    with replacing(path) as temporary:
+        temporary.write_text("new")
+        assert temporary.suffix == ".txt"
+        assert path.read_text() == "old"
+    assert path.read_text() == "new"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_error_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("old")
+
+    def fail():
+        with replacing(path) as temporary:
+            temporary.write_text("half")
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        fail()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@posix
+@pytest.mark.parametrize("mask", [0o022, 0o077])
+def test_a_file_has_the_access_of_any_new_file_from_the_beginning(tmp_path, monkeypatch, mask):
+    before = os.umask(mask)
+    monkeypatch.setattr(os, "umask", None)  # it belongs to all threads
+    try:
+        with replacing(tmp_path / "a") as temporary:
+            assert stat.S_IMODE(temporary.stat().st_mode) == 0o666 & ~mask
+            temporary.write_text("new")
+    finally:
+        monkeypatch.undo()
+        os.umask(before)
+    assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o666 & ~mask
+
+
+def test_the_contents_are_on_the_disk_before_the_name(tmp_path, monkeypatch):
+    synced = []
+    real = os.fsync
+
+    def fsync(handle):
+        synced.append((os.fstat(handle).st_size, (tmp_path / "a").exists()))
+        real(handle)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    write(tmp_path / "a", "12345")
+    assert synced == [(5, False)]
+
+
+@posix
+@pytest.mark.parametrize("there", [True, False])
+def test_a_link_stays_and_its_file_is_replaced(tmp_path, there):
+    (tmp_path / "folder").mkdir()
+    file, link = tmp_path / "folder" / "file", tmp_path / "link"
+    if there:
+        file.write_text("old")
+    link.symlink_to(file)
+    write(link)
+    assert link.is_symlink()
+    assert file.read_text() == "new"
+    assert list((tmp_path / "folder").iterdir()) == [file]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (".", "is a folder; name a file"),
+        ("none/a.json", "the folder .*none does not exist"),
+        ("file/a.json", "the folder .*file is not a folder"),
+        ("a" * 5000, "cannot be written"),
+        ("a\0b", "is not the name of a file"),
+    ],
+)
+def test_a_place_where_no_file_can_be_is_named(tmp_path, name, words):
+    (tmp_path / "file").touch()
+    with pytest.raises(InputError, match=words), replacing(tmp_path / name):
+        pass
+
+
+@posix
+def test_a_device_is_not_replaced(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="is a device or a pipe"), replacing(tmp_path / "pipe"):
+        pass
+
+
+@user
+def test_a_folder_that_may_not_be_written_is_named(tmp_path):
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(InputError, match="cannot be written"), replacing(tmp_path / "a"):
+            pass
+    finally:
+        tmp_path.chmod(0o700)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        OSError(errno.ENOSPC, "No space left on device"),
+        OSError("Unable to write (file write failed: errno = 28, error message = 'No space')"),
+    ],
+)
+def test_a_full_disk_is_said_in_one_line(tmp_path, error):
+    with pytest.raises(InputError, match="a: cannot be written"), replacing(tmp_path / "a"):
+        raise error
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        FileNotFoundError(errno.ENOENT, "No such file or directory", "other"),
+        ConnectionResetError(errno.ECONNRESET, "Connection reset by peer"),
+        TimeoutError("the worker did not answer"),
+    ],
+)
+def test_an_error_that_is_not_of_writing_keeps_its_message(tmp_path, error):
+    with pytest.raises(type(error)) as raised, replacing(tmp_path / "a"):
+        raise error
+    assert raised.value is error
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_text_is_read_with_its_lines(tmp_path):
+    (tmp_path / "a").write_bytes("ä\r\nb\n".encode())
+    assert read_text(tmp_path / "a") == "ä\nb\n"
+
+
+def test_a_file_that_is_too_large_is_refused(tmp_path):
+    (tmp_path / "a").write_bytes(b"x" * (2**20 + 1))
+    with pytest.raises(InputError, match="a: is too large; at most 1 MiB can be read"):
+        read_text(tmp_path / "a", 2**20)
+    assert len(read_text(tmp_path / "a", 2**20 + 1)) == 2**20 + 1
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="a file without an end")
+def test_a_file_without_an_end_is_refused():
+    with pytest.raises(InputError, match="/dev/zero: is too large"):
+        read_text("/dev/zero", 2**20)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("none", "there is no such file"), (".", "cannot be read")]
+)
+def test_what_cannot_be_read_is_named(tmp_path, name, words):
+    with pytest.raises(InputError, match=words):
+        read_text(tmp_path / name)
+
+
+def test_what_is_not_text_is_named(tmp_path):
+    (tmp_path / "a").write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="is not UTF-8 text"):
+        read_text(tmp_path / "a")
