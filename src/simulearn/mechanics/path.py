@@ -39,7 +39,7 @@ MOST = 60  # factorisations in a frame
 DESCENT = 600  # the same in a descent
 # Shares of the grid's dimension
 EXPECTED = 0.04  # from where the path leads, beyond which a frame is followed in small steps
-JUMP = 0.13  # the same where the path does not lead on: at first, and where gravity changes
+JUMP = 0.2  # the same where the path does not lead on: at first, and where gravity changes
 WIDER = 2.5  # times as much where only some of the frames are reached
 SMALLEST = 1 / 32  # of a frame, the smallest step
 ALLOWED = 1.0  # mm that a small step may move more than twice what the step before did
