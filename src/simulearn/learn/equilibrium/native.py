@@ -258,4 +258,3 @@ def _last_corrected(
         spread(first.twists, found.twists),
         ended=found.ended,
     )
-
