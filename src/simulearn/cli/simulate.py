@@ -253,6 +253,8 @@ def _table(result: "Result") -> Table:
     caption += f"\nmaterial {result.material}"
     if result.model is not None:
         caption += f", model {result.model}"
+    if result.bound_mm is not None:
+        caption += f"\nnine of ten such answers are off by less than {result.bound_mm:.2f} mm"
     table = Table(
         box=None,
         title=(
