@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 
 from simulearn.errors import InputError
 from simulearn.fea import COARSE, THREE_ACROSS, Layout, mesh
+from simulearn.fea.bar import bar
 from simulearn.fea.mesh import cuts
 from simulearn.fea.points import bricks_of
+from simulearn.fea.printing import actuator_reaches_end
 from simulearn.grid import Grid, Rules, draw_valid, drop_beams, make, outline
 from simulearn.material import load_material
 
@@ -76,9 +78,20 @@ def test_brick_faces_lie_on_the_ends_of_the_actuator(ratio: float, slabs: int) -
         assert abs(places - end).min() < 1e-12
 
 
-@pytest.mark.parametrize("ratio", [0, 0.25, 0.5, 0.75, 1, 1 - 1e-9])
+@pytest.mark.parametrize("ratio", [0, 0.25, 0.5, 0.75, 1])
 def test_quarters_need_no_uneven_slabs(ratio: float) -> None:
     np.testing.assert_allclose(cuts(ratio, 8), np.linspace(0, 1, 9), atol=1e-15)
+
+
+@pytest.mark.parametrize(("rest", "faces"), [(0.44, 0), (0.46, 1)])
+def test_an_end_shorter_than_half_a_printed_row_is_none(rest: float, faces: int) -> None:
+    """Length counts, not ratio: no sliver is meshed, and none is left out that is printed."""
+    for length in (20.0, 90.0):
+        ratio = 1 - 2 * rest / length
+        assert actuator_reaches_end(ratio, length) == (faces == 0)
+        solid = mesh(bar(length, ratio, PLA), PLA)
+        x = np.unique(solid.nodes[:, 0].round(6)) - 3.6
+        assert np.isclose(x, rest, atol=1e-6).sum() == faces
 
 
 def test_growth_follows_the_printing() -> None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from skfem import Basis, ElementHexS2, MeshHex
 
 from simulearn.errors import InputError
-from simulearn.fea.printing import printing
+from simulearn.fea.printing import actuator_reaches_end, printing
 from simulearn.fea.sampling import sampling
 from simulearn.fea.solid import Solid
 from simulearn.grid import Grid, Outline, outline
@@ -66,8 +66,7 @@ def cuts(ratio: float, slabs: int) -> Array:
         (slabs + 1,) positions; uniform for every ratio that is a multiple of 2 / slabs.
     """
     ratio = abs(ratio)
-    # An end shorter than a printed line is no end: slivers would only spoil the mesh.
-    if ratio == 0 or ratio > 0.99:
+    if ratio == 0 or ratio >= 1:
         return np.linspace(0, 1, slabs + 1)
     half = int(np.clip(round(ratio * slabs / 2), 1, slabs // 2 - 1))
     first = np.linspace(0, (1 - ratio) / 2, slabs // 2 - half + 1)
@@ -86,7 +85,11 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     shape = outline(grid, section)
     across = layout.across(section)
     up = np.linspace(-0.5, 0.5, 2 * layout.layers + 1) * section.thickness
-    along = np.array([cuts(ratio, layout.slabs) for ratio in grid.actuators])
+    axis = shape.beams.mean(axis=2)  # of the beams, (B, [start, end], 2)
+    length = np.linalg.norm(axis[:, 1] - axis[:, 0], axis=1)
+    # Slivers beyond an actuator's end would only spoil the mesh.
+    ratios = np.where(actuator_reaches_end(grid.actuators, length), 1.0, grid.actuators)
+    along = np.array([cuts(ratio, layout.slabs) for ratio in ratios])
 
     joints, beams = _number(grid, shape, layout.slabs, len(across), len(up))
     places = np.empty((max(joints.max(), beams.max()) + 1, 3))
@@ -126,7 +129,10 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
             "the outlines of the grid fold over: its joints are too close or too acute"
         )
     beam, slab, strip, layer = where.T
-    held = (beam == -1) & (slab == grid.fixed) & (layer < layout.layers)
+    middle = ((up[1:] + up[:-1]) / 2 / section.thickness)[layer]
+    support = grid.support
+    held = (beam == -1) & (slab == support.joint)
+    held &= (support.lower <= middle) & (middle <= support.upper)
     centre = (along[:, 1:] + along[:, :-1]) / 2  # of slabs
     width = np.diff(across)
     angle, growth, stress = printing(
@@ -140,10 +146,9 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     # Scikit-fem numbers the vertices first, so that a vertex is its own node.
     corner = joints[:, [0, -1, -1, 0], [0, 0, -1, -1]]  # (J, 4, up)
     section_ = beams[:, [0, layout.slabs // 2, -1]][:, :, [0, -1]]  # (B, 3, [right, left], up)
-    axis = shape.beams.mean(axis=2)  # of the beams, (B, [start, end], 2)
     samples, shares = sampling(
         along,
-        np.linalg.norm(axis[:, 1] - axis[:, 0], axis=1),
+        length,
         across,
         layout.layers,
         points,

@@ -85,8 +85,9 @@ class Path:
                 self._leave(state, frame)
             else:
                 self.last = [*self.last, state][-3:]
+            # After a success twice as far, after a snap a short step.
+            step = SHORT * (1 - to) if len(self.last) == 1 and release else 2 * (to - done)
             done = to
-            step = SHORT * (1 - done) if len(self.last) == 1 and release else 1.0
         return self.last[-1]
 
     def _near(self, guess: SolidState) -> SolidState | None:

@@ -7,12 +7,27 @@ a beam is printed along the beam, the other half across it, the outermost row on
 """
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from simulearn.grid import Grid
 from simulearn.material import Material
 
 Array = NDArray[np.float64]
+
+# Half a printed row of 0.9 mm: what is left of a beam beyond an actuator and shorter than this is
+# not printed as a piece of its own.
+SHORTEST_END = 0.45  # mm
+
+
+def actuator_reaches_end(ratio: ArrayLike, length: ArrayLike) -> NDArray[np.bool_]:
+    """Return whether actuators reach the ends of their beams, for all that depends on it.
+
+    Args:
+        ratio: signed ratios of actuator length to the beam's net length; actuators are centred.
+        length: net lengths of the beams, mm.
+    """
+    rest = (1 - np.abs(ratio)) * np.asarray(length) / 2
+    return np.asarray(rest < SHORTEST_END)
 
 
 def printing(

@@ -20,7 +20,12 @@ NEAR = 2e-4
 REST = 3e-3  # of the tolerance: largest last correction
 # Residual over the forces of the bricks, root of the sums of squares, at which it is balanced.
 BALANCED = 1e-3
+# Largest difference of the stress in the factors from the final one, relative: if it is larger, the
+# negative pivots do not tell whether the equilibrium is stable.
+DRIFT = 0.05
 MODE_ITERATIONS = 12
+GROWTH = 100  # of a step over the least one: it diverges
+MANY = 1000  # iterations: no limit
 
 
 @dataclass(frozen=True)
@@ -106,8 +111,9 @@ class EquilibriumProblem:
             self.load += forces
         self.size = float(np.ptp(solid.nodes, axis=0).max())
         self.iterations = self.corrections = 0
-        # A force that is nothing: rounding in a solid without loads, N.
-        self._nothing = 1e-12 * (law.first + 2 * law.shear) * self.size**2
+        # Stress (MPa) and force (N) that are nothing: rounding in a solid without loads.
+        self._rounding = 1e-12 * (law.first + 2 * law.shear)
+        self._nothing = self._rounding * self.size**2
         self._factors = np.empty(self.fronts.factors[-1])
         self._pivots = np.empty(self.fronts.pivots[-1])
 
@@ -163,6 +169,7 @@ class EquilibriumProblem:
         start: SolidState,
         viscosity: float = 0.0,
         origin: Array | None = None,
+        iterations: int = 0,
     ) -> SolidState:
         """Return the equilibrium near a state, under that state's released fraction and gravity.
 
@@ -170,6 +177,7 @@ class EquilibriumProblem:
             start: where to begin; it need not be in equilibrium.
             viscosity: resistance c to motion away from `origin`, N/mm per mm3; see `flow`.
             origin: (N, 3) mm, displacements that it resists to leave.
+            iterations: at most, if fewer than the control's.
 
         Raises:
             NotConvergedError: none was reached.
@@ -179,13 +187,14 @@ class EquilibriumProblem:
         tolerance = self.control.tolerance * self.size / 100
         u, carried = start.u, start.carried
         least = change = np.inf
-        for _ in range(self.control.iterations):
+        for _ in range(min(iterations or MANY, self.control.iterations)):
             stop_if(self.cancel)
             self.iterations += 1
             out = load if origin is None else load - drag[:, None] * (u - origin)
             step, negative = self.factor(u, s, carried, out, viscosity, self.control.mixed)
+            factored = carried
             change = _largest(step)
-            if not change < min(100 * least, 100 * self.size):
+            if not change < min(GROWTH * least, 100 * self.size):
                 raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")
             least = min(least, change)
             carried = entries.carry(self.law, self.bricks, u, step, s)
@@ -209,6 +218,8 @@ class EquilibriumProblem:
                 u = u + step
                 # They converge linearly, so what is left is a part of the last one.
                 if small and balanced:
+                    if abs(carried - factored).max() > DRIFT * abs(carried).max() + self._rounding:
+                        break  # the factors know nothing of this stress: is it stable?
                     return SolidState(s, start.gravity, u, carried, negative)
                 near = change < before / 5
         raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")

@@ -26,7 +26,7 @@ class Solid:
         growth: (E, Q, 3) released strains along, across and in thickness, in the printing frame,
             when all is released: F_g = I + s diag(growth).
         stress: (E, Q, 3) printed-in normal stresses in the same frame.
-        fixed: (K,) nodes that are held (the lower half of the fixed joint).
+        fixed: (K,) nodes that are held (see `Grid.support`).
         joints: (J, 8) nodes at the joints' corners, in the order of `Result.joints`.
         beams: (B, 3, 4) nodes at the beams' sections, in the order of `Result.beams`.
         samples: (B, 4, 4, 8) integration points around the stress samples, counted from the

@@ -1,14 +1,14 @@
 """Energy densities of the constitutive laws, for automatic differentiation.
 
-The solver has stress and moduli in closed form (`fea.kernels.law`). What is derived from these
-energies is independent of them: the tests compare both, and CalculiX is given only what is here.
+Call it in double precision (`compiled.double_precision`). The solver has stress and moduli in
+closed form (`fea.kernels.law`). What is derived from these energies is independent of them: the
+tests compare both, and CalculiX is given only what is here.
 """
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
-import simulearn.compiled  # noqa: F401  double precision, before any array is made
 from simulearn.fea.kernels.law import MARLOW, SMALL, ST_VENANT_KIRCHHOFF, ConstitutiveLaw
 
 

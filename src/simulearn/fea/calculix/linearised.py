@@ -11,7 +11,6 @@ Elements, kinematics, equilibrium and load are CalculiX's; the law is ours (see 
 
 from collections.abc import Iterable, Iterator, Sequence
 
-import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
@@ -140,9 +139,7 @@ class _Problem:
         """Return D (E, 6, 6) and E0 (E, 8, 6) at CalculiX's points, tensor strain."""
         H = np.einsum("enk,eqin->eqki", u[self.solid.bricks], self.gradients)
         E = ((H + H.swapaxes(2, 3) + H.swapaxes(2, 3) @ H) / 2)[..., ROW, COLUMN] * SHEARS
-        S, D = self.moduli(
-            *(jnp.asarray(x) for x in (E.reshape(-1, 6), self.frames, 1 + release * self.growth))
-        )
+        S, D = self.moduli(E.reshape(-1, 6), self.frames, 1 + release * self.growth)
         stress = np.asarray(S).reshape(E.shape)
         mean = np.einsum("eqij,q->eij", np.asarray(D).reshape(*E.shape, 6), self.solid.weights)
         if not (np.isfinite(mean).all() and np.isfinite(stress).all()):

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from simulearn.compiled import double_precision
 from simulearn.fea.calculix.energy import energy as density
 from simulearn.fea.kernels.law import ConstitutiveLaw
 
@@ -19,7 +20,7 @@ from simulearn.fea.kernels.law import ConstitutiveLaw
 ROW, COLUMN = np.array([[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]]).T
 
 
-def moduli_of(law: ConstitutiveLaw) -> Callable[[Array, Array, Array], tuple[Array, Array]]:
+def moduli_of(law: ConstitutiveLaw) -> Callable[..., tuple[Array, Array]]:
     """Return the function that gives S (M, 6) and dS/dE (M, 6, 6) of a law, MPa.
 
     Its arguments are the strains (M, 6) with engineering shears, the axes of the printing frames as
@@ -38,7 +39,7 @@ def moduli_of(law: ConstitutiveLaw) -> Callable[[Array, Array, Array], tuple[Arr
         point = strain, frame, stretch
         return jax.grad(energy)(*point), jax.hessian(energy)(*point)
 
-    return jax.jit(jax.vmap(both))
+    return double_precision(jax.jit(jax.vmap(both)))
 
 
 def _root(C: Array) -> Array:
