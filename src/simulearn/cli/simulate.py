@@ -229,7 +229,8 @@ def _overview(rows: "dict[str, Outcome | InputError]") -> Table:
         numbers = summary(row)
         bound = "" if row.bound_mm is None else f"{row.bound_mm:.2f}"
         notes = [] if row.stable else ["unstable"]
-        notes += [f"{len(row.warnings)} warnings"] if row.warnings else []
+        count = len(row.warnings)
+        notes += [f"{count} warning" + "s" * (count > 1)] if count else []
         table.add_row(
             title,
             f"{numbers['lowest_mm']:.1f}",
