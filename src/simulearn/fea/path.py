@@ -1,9 +1,9 @@
 """The path of a solid while its stress is released: increment by increment, snaps followed.
 
 Each increment starts from a quadratic extrapolation of the last three states. One that does not
-converge is halved; where even a hundredth of the release has no equilibrium near, or one far from
-the extrapolation, the solid snaps and `flow` leads to the next equilibrium. An equilibrium that is
-not stable is left along its softest mode. So there is always an answer, and never a wrong one.
+converge is halved, and so is one that leads through unstable states or far from the extrapolation.
+Where even a hundredth of the release does, the solid snaps, and `flow` leads to the next
+equilibrium. An equilibrium that is not stable is left along its softest mode.
 """
 
 from collections.abc import Sequence
@@ -96,9 +96,9 @@ class Path:
             state = self.problem.equilibrium(guess)
         except NotConvergedError:
             return None
-        if len(self.last) > 2 and abs(state.u - guess.u).max() > FAR * self.problem.size:
-            return None  # another branch
-        return state
+        far = len(self.last) > 2 and abs(state.u - guess.u).max() > FAR * self.problem.size
+        # Through an unstable stretch, or far from where the path led: another branch.
+        return None if far or (state.crossed and state.stable) else state
 
     def _snap(self, s: float, g: float, frame: int) -> None:
         """Follow the flow from the last state to the equilibrium under another load."""

@@ -57,6 +57,7 @@ class SolidState:
         carried: (M, 6) MPa, second Piola-Kirchhoff stress at the points, in the grown state, order
             11 22 33 12 13 23.
         negative: number of negative eigenvalues of the stiffness.
+        crossed: whether the iteration came through displacements where the stiffness had some.
     """
 
     released: float
@@ -64,6 +65,7 @@ class SolidState:
     u: Array
     carried: Array
     negative: int = 0
+    crossed: bool = False
 
     @property
     def stable(self) -> bool:
@@ -187,11 +189,13 @@ class EquilibriumProblem:
         tolerance = self.control.tolerance * self.size / 100
         u, carried = start.u, start.carried
         least = change = np.inf
+        crossed = False
         for _ in range(min(iterations or MANY, self.control.iterations)):
             stop_if(self.cancel)
             self.iterations += 1
             out = load if origin is None else load - drag[:, None] * (u - origin)
             step, negative = self.factor(u, s, carried, out, viscosity, self.control.mixed)
+            crossed |= negative > 0
             factored = carried
             change = _largest(step)
             if not change < min(GROWTH * least, 100 * self.size):
@@ -220,7 +224,7 @@ class EquilibriumProblem:
                 if small and balanced:
                     if abs(carried - factored).max() > DRIFT * abs(carried).max() + self._rounding:
                         break  # the factors know nothing of this stress: is it stable?
-                    return SolidState(s, start.gravity, u, carried, negative)
+                    return SolidState(s, start.gravity, u, carried, negative, crossed)
                 near = change < before / 5
         raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")
 
