@@ -73,25 +73,24 @@ def figures(model: Model, batches: list) -> dict[str, float]:
 
 def picture(rows: list[dict]) -> Figure:
     """Return the curves."""
-    with style.paper():
-        figure = Figure(figsize=(4.6, 3.0), dpi=style.DPI, layout="constrained")
-        ax = figure.subplots()
-        for name, colour in zip(WORDS, COLOURS, strict=True):
-            part = sorted((r for r in rows if r["model"] == name), key=lambda r: r["trials"])
-            if part:
-                x, y = ([r[k] for r in part] for k in ("trials", "mean_percent"))
-                ax.plot(x, y, "o-", color=colour, lw=1.2, ms=3)
-                ax.annotate(
-                    WORDS[name], (x[-1], y[-1]), (5, 0), textcoords="offset points", va="center",
-                    color=colour, fontsize=8,
-                )  # fmt: skip
-        ax.set(xscale="log", yscale="log", xlabel="trials", xlim=(40, 6000))
-        ax.set_ylabel("mean vertex error, % of dimension")
-        ax.set_xticks(SIZES, [str(n) for n in SIZES])
-        ax.minorticks_off()
-        ax.set_yticks([0.1, 0.2, 0.5, 1, 2, 5, 10], ["0.1", "0.2", "0.5", "1", "2", "5", "10"])
-        ax.spines[["top", "right"]].set_visible(False)
-    return figure
+    figure = Figure(figsize=(4.6, 3.0), dpi=style.DPI, layout="constrained")
+    ax = figure.subplots()
+    for name, colour in zip(WORDS, COLOURS, strict=True):
+        part = sorted((r for r in rows if r["model"] == name), key=lambda r: r["trials"])
+        if part:
+            x, y = ([r[k] for r in part] for k in ("trials", "mean_percent"))
+            ax.plot(x, y, "o-", color=colour, lw=1.2, ms=3)
+            ax.annotate(
+                WORDS[name], (x[-1], y[-1]), (5, 0), textcoords="offset points", va="center",
+                color=colour, fontsize=8,
+            )  # fmt: skip
+    ax.set(xscale="log", yscale="log", xlabel="trials", xlim=(40, 6000))
+    ax.set_ylabel("mean vertex error, % of dimension")
+    ax.set_xticks(SIZES, [str(n) for n in SIZES])
+    ax.minorticks_off()
+    ax.set_yticks([0.1, 0.2, 0.5, 1, 2, 5, 10], ["0.1", "0.2", "0.5", "1", "2", "5", "10"])
+    ax.spines[["top", "right"]].set_visible(False)
+    return style.ink(figure)
 
 
 def main() -> None:

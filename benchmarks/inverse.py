@@ -141,33 +141,30 @@ def _slope(f: Callable[[float], float], h: float) -> float:
 
 def curves(runs: dict[str, dict[str, Any]], seconds: float) -> Figure:
     """Return the median error against time and against designs, methods side by side."""
-    with style.paper():
-        figure = Figure(figsize=(7.2, 2.8), dpi=style.DPI, layout="constrained")
-        axes = figure.subplots(1, 2, sharey=True)
-        most = max(r["designs"] for told in runs.values() for r in told.values())
-        for ax, column, label, stop in (
-            (axes[0], 0, "seconds", seconds),
-            (axes[1], 1, "designs simulated", most),
-        ):
-            at = np.linspace(0.0, stop, 400) if column == 0 else np.geomspace(1, stop, 400)
-            for method, told in runs.items():
-                if told:
-                    lines = [_stepped(np.array(r["curve"]), column, at) for r in told.values()]
-                    ax.plot(
-                        at, np.median(lines, axis=0), color=COLOURS[method], lw=1.4, label=method
-                    )
-                    low, high = np.percentile(lines, [25, 75], axis=0)
-                    ax.fill_between(at, low, high, color=COLOURS[method], alpha=0.12, lw=0)
-            ax.axhline(ASKED, color=style.INK, lw=0.6, ls=":")
-            ax.set_yscale("log")
-            ax.yaxis.set_major_formatter("{x:g}")
-            ax.set_xlabel(label)
-            ax.spines[["top", "right"]].set_visible(False)
-            ax.tick_params(which="both", labelsize=7)
-        axes[1].set_xscale("log")
-        axes[0].set_ylabel("median fitting error, mm")
-        axes[0].legend(frameon=False, fontsize=7)
-    return figure
+    figure = Figure(figsize=(7.2, 2.8), dpi=style.DPI, layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
+    most = max(r["designs"] for told in runs.values() for r in told.values())
+    for ax, column, label, stop in (
+        (axes[0], 0, "seconds", seconds),
+        (axes[1], 1, "designs simulated", most),
+    ):
+        at = np.linspace(0.0, stop, 400) if column == 0 else np.geomspace(1, stop, 400)
+        for method, told in runs.items():
+            if told:
+                lines = [_stepped(np.array(r["curve"]), column, at) for r in told.values()]
+                ax.plot(at, np.median(lines, axis=0), color=COLOURS[method], lw=1.4, label=method)
+                low, high = np.percentile(lines, [25, 75], axis=0)
+                ax.fill_between(at, low, high, color=COLOURS[method], alpha=0.12, lw=0)
+        ax.axhline(ASKED, color=style.INK, lw=0.6, ls=":")
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter("{x:g}")
+        ax.set_xlabel(label, fontsize=8)
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.tick_params(which="both", labelsize=7)
+    axes[1].set_xscale("log")
+    axes[0].set_ylabel("median fitting error, mm", fontsize=8)
+    axes[0].legend(frameon=False, fontsize=7)
+    return style.ink(figure)
 
 
 def _stepped(curve: np.ndarray, column: int, at: np.ndarray) -> np.ndarray:

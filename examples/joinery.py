@@ -15,7 +15,7 @@ import numpy as np
 
 from simulearn.grid import Grid, make, write_grid
 from simulearn.show import combined
-from simulearn.simulate import Result, engine
+from simulearn.simulate import Result, engine, one, results
 
 LENGTH = 55.0  # mm, of the beams
 # Ratios of the beams that run across the corner: in the rim, in the middle.
@@ -76,23 +76,23 @@ def main(words: list[str] | None = None) -> Fit:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-o", "--output", type=Path, default=Path("out/joinery"))
     parser.add_argument("--engine", default="learned")
-    asked = parser.parse_args(words)
-    asked.output.mkdir(parents=True, exist_ok=True)
+    options = parser.parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
     grids = [design(*ratios) for ratios in VARIANTS]
-    fits = [fit(result) for result in engine(asked.engine).simulate(grids)]
-    for (rim, inner), told in zip(VARIANTS, fits, strict=True):
-        print(f"rim {rim:g}, middle {inner:g}: ends turned by {told.turned:.1f} degrees")
+    fits = [fit(result) for result in results(engine(options.engine).simulate(grids))]
+    for (rim, inner), shape in zip(VARIANTS, fits, strict=True):
+        print(f"rim {rim:g}, middle {inner:g}: ends turned by {shape.turned:.1f} degrees")
     best = min(range(len(fits)), key=lambda k: abs(fits[k].turned - 90))
-    (result,) = engine("fea").simulate([grids[best]])
-    told = fit(result)
+    result = one(engine("fea").simulate([grids[best]])[0])
+    shape = fit(result)
     print(
-        f"rim and middle {VARIANTS[best]} by finite elements: {told.turned:.1f} degrees; slits "
-        f"{told.slits[0]:.1f} and {told.slits[1]:.1f} mm from the corner, "
-        f"clearance {told.clearance:.1f} mm"
+        f"rim and middle {VARIANTS[best]} by finite elements: {shape.turned:.1f} degrees; slits "
+        f"{shape.slits[0]:.1f} and {shape.slits[1]:.1f} mm from the corner, "
+        f"clearance {shape.clearance:.1f} mm"
     )
-    write_grid(grids[best], asked.output / "centrepiece.json")
-    combined(result).savefig(asked.output / "centrepiece.png")
-    return told
+    write_grid(grids[best], options.output / "centrepiece.json")
+    combined(result).savefig(options.output / "centrepiece.png")
+    return shape
 
 
 if __name__ == "__main__":

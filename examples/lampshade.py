@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from simulearn.grid import grid_to_dict, make, write_grid
-from simulearn.inverse import Outcome, Task, optimize, task_from_dict, write_task
+from simulearn.inverse import SearchResult, Task, optimize, task_from_dict, write_task
 from simulearn.show.assembly import Place, assembly
 
 MODULES = ("top", "middle", "bottom")
@@ -29,8 +29,8 @@ PAIRS = {
 
 def surface(angle: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Return the points (..., 3) mm of the shade at angles (rad) and heights (mm)."""
-    whole = len(MODULES) * HEIGHT
-    radius = 84.0 - 12.0 * np.sin(np.pi * (z / whole - 0.5))
+    total = len(MODULES) * HEIGHT
+    radius = 84.0 - 12.0 * np.sin(np.pi * (z / total - 0.5))
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=-1)
 
 
@@ -72,37 +72,37 @@ def task(
     )
 
 
-def main(words: list[str] | None = None) -> list[Outcome]:
+def main(words: list[str] | None = None) -> list[SearchResult]:
     """Fit the modules and put them together."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-o", "--output", type=Path, default=Path("out/lampshade"))
     parser.add_argument("--seconds", type=float, default=30.0)
     parser.add_argument("--iterations", type=int, default=1000)
     parser.add_argument("--engine", default="learned")
-    asked = parser.parse_args(words)
-    asked.output.mkdir(parents=True, exist_ok=True)
-    found, parts = [], []
+    options = parser.parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
+    searches, parts = [], []
     for k, name in enumerate(MODULES):
-        wanting = task(k, asked.seconds, asked.iterations, asked.engine)
-        write_task(wanting, asked.output / f"{name}-task.json")
-        outcome = optimize(wanting)
-        assert outcome.check is not None
-        result = outcome.check.fea or outcome.check.result
+        wanting = task(k, options.seconds, options.iterations, options.engine)
+        write_task(wanting, options.output / f"{name}-task.json")
+        search = optimize(wanting)
+        assert search.check is not None
+        result = search.check.shape
         place = Place.fitting(result.centres[-1], wanted(k))
         parts += [(result, Place.about_z(360 / AROUND * n).after(place)) for n in range(AROUND)]
-        write_grid(outcome.grid, asked.output / f"{name}.json")
-        found.append(outcome)
+        write_grid(search.grid, options.output / f"{name}.json")
+        searches.append(search)
         print(
-            f"{name}: {outcome.error_mm:.2f} mm by the engine, "
-            f"{outcome.check.error_fea_mm:.2f} mm by finite elements, "
-            f"{outcome.iterations} iterations, {outcome.designs} designs, {outcome.seconds:.0f} s"
+            f"{name}: {search.error_mm:.2f} mm by the engine, "
+            f"{search.check.error_fea_mm:.2f} mm by finite elements, "
+            f"{search.iterations} iterations, {search.designs} designs, {search.seconds:.0f} s"
         )
-    mean = np.mean([outcome.check.error_fea_mm for outcome in found])
-    seconds = sum(outcome.seconds for outcome in found)
+    mean = np.mean([search.check.error_fea_mm for search in searches])
+    seconds = sum(search.seconds for search in searches)
     print(f"mean fitting error {mean:.2f} mm in {seconds:.0f} s (paper: 4.44 mm in 12 min)")
     text = f"{AROUND} x {len(MODULES)} modules, mean fitting error {mean:.2f} mm"
-    assembly(parts, text).savefig(asked.output / "assembly.png")
-    return found
+    assembly(parts, text).savefig(options.output / "assembly.png")
+    return searches
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from simulearn.grid import grid_to_dict, make
 from simulearn.inverse import Task, rank, task_from_dict, write_task
 from simulearn.show.assembly import Place, assembly
 from simulearn.show.inverse import cards
-from simulearn.simulate import Result, engine
+from simulearn.simulate import Result, engine, one, results
 
 LENGTH = 60.0  # mm, of the beams
 LEFT, RIGHT = 3, 5  # joints where units touch
@@ -80,30 +80,30 @@ def main(words: list[str] | None = None) -> tuple[float, Result]:
     parser.add_argument("--units", type=int, default=6)
     parser.add_argument("--picks", type=int, default=PICKS)
     parser.add_argument("--engine", default="learned")
-    asked = parser.parse_args(words)
-    asked.output.mkdir(parents=True, exist_ok=True)
-    wanted = 360 / asked.units
-    now, answering = task(asked.units), engine(asked.engine)
-    away = abs(wanted - contact_angle(answering.simulate([now.start])[0]))
-    for k in range(asked.picks):
-        told = rank(now, answering)
-        results = answering.simulate([one.grid for one in told.best])
+    options = parser.parse_args(words)
+    options.output.mkdir(parents=True, exist_ok=True)
+    wanted = 360 / options.units
+    now, answering = task(options.units), engine(options.engine)
+    away = abs(wanted - contact_angle(one(answering.simulate([now.start])[0])))
+    for k in range(options.picks):
+        ranking = rank(now, answering)
+        shapes = results(answering.simulate([option.grid for option in ranking.best]))
         if k == 0:
-            cards(told, results, now.aims).savefig(asked.output / "suggestions.png")
-        angles = [contact_angle(result) for result in results]
+            cards(ranking, shapes, now.aims).savefig(options.output / "suggestions.png")
+        angles = [contact_angle(result) for result in shapes]
         pick = int(np.argmin([abs(wanted - angle) for angle in angles]))
         if abs(wanted - angles[pick]) >= away:
             break
-        away, chosen = abs(wanted - angles[pick]), told.best[pick]
+        away, chosen = abs(wanted - angles[pick]), ranking.best[pick]
         now = now.with_grid(chosen.grid)
         words = f"suggestion {pick + 1}, {chosen.change.words}"
         print(f"{k + 1}: {words}: {chosen.error_mm:.2f} mm, {angles[pick]:.1f} degrees")
-    write_task(now, asked.output / "task.json")
-    (unit,) = engine("fea").simulate([now.start])
+    write_task(now, options.output / "task.json")
+    unit = one(engine("fea").simulate([now.start])[0])
     angle = contact_angle(unit)
     print(f"contact angle by finite elements {angle:.1f} of {wanted:.1f} degrees")
-    text = f"{asked.units} units, contact angle {angle:.1f} of {wanted:.1f} degrees"
-    assembly(ring(unit, asked.units), text).savefig(asked.output / "ring.png")
+    text = f"{options.units} units, contact angle {angle:.1f} of {wanted:.1f} degrees"
+    assembly(ring(unit, options.units), text).savefig(options.output / "ring.png")
     return angle, unit
 
 

@@ -7,6 +7,7 @@ from skfem import ElementHexS2
 
 from simulearn.fea.solid import Solid
 from simulearn.grid import Grid
+from simulearn.material import load_material
 from simulearn.simulate.result import FRAMES, Result
 
 HALF_WIDTH, HALF_THICKNESS = 3.6, 2.0
@@ -50,7 +51,10 @@ def result(grid=None, bend=saddle, solid=True):
     grid = square_grid() if grid is None else grid
     joints, beams = _joints(grid), _beams(grid)
     shares = [*np.linspace(0, 1, FRAMES - 1), 1.05]
-    move = lambda p: np.array([bend(p.reshape(-1, 3), s).reshape(p.shape) for s in shares])  # noqa: E731
+
+    def move(p):
+        return np.array([bend(p.reshape(-1, 3), s).reshape(p.shape) for s in shares])
+
     mesh = _solid(grid, joints, beams) if solid else None
     rng = np.random.default_rng(0)
     return Result(
@@ -60,6 +64,7 @@ def result(grid=None, bend=saddle, solid=True):
         beams=move(beams),
         stress=rng.normal(size=(FRAMES, len(beams), 4, 4, 6)),
         seconds=1.25,
+        material=load_material("pla-hot-water").identity,
         record={"iterations": [0] + [3] * (FRAMES - 1)},
         solid=mesh,
         displacements=move(mesh.nodes) - mesh.nodes if mesh else None,
@@ -98,7 +103,10 @@ def _solid(grid, joints, beams):
     every = np.concatenate(bricks)
     _, first, index = np.unique(np.round(every, 6), axis=0, return_index=True, return_inverse=True)
     nodes = every[first]
-    number = lambda p: np.linalg.norm(nodes - p[..., None, :], axis=-1).argmin(axis=-1)  # noqa: E731
+
+    def number(p):
+        return np.linalg.norm(nodes - p[..., None, :], axis=-1).argmin(axis=-1)
+
     known = {
         "nodes": nodes,
         "bricks": index.reshape(-1, 20),

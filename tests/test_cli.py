@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import meshio
@@ -21,6 +22,8 @@ import synthetic
 from simulearn import __version__, cli
 from simulearn.errors import ComputationError
 from simulearn.grid import grid_from_dict, grid_to_dict, library, make, read_grid
+from simulearn.material.material import HERE
+from simulearn.schedule import Snap
 from simulearn.simulate import ENGINES, read_json, read_npz
 from simulearn.simulate.engines import Engine
 
@@ -33,7 +36,7 @@ def solved(monkeypatch):
     """Let a formula stand in for finite elements; return the grids that it was asked for."""
     asked = []
 
-    def solver(grid, material, progress):
+    def solver(grid, material, progress, cancel):
         asked.append(grid)
         progress(12, 12)
         return synthetic.result(grid)
@@ -47,7 +50,7 @@ def failing(monkeypatch):
     """Return a function that makes the solver raise an error."""
 
     def fail(error):
-        def solver(grid, material, progress):
+        def solver(grid, material, progress, cancel):
             raise error
 
         monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
@@ -104,7 +107,7 @@ def test_simulate_gives_machines_the_result(run):
     code, out, err = run("simulate", "saddle", "--json")
     data = json.loads(out)
     assert (code, err) == (0, "")
-    assert list(data) == ["schema", "grid", "engine", "joints", "beams", "seconds"]
+    assert {"stable", "bound_mm", "snaps", "warnings", "material", "model"} <= set(data)
     assert (data["schema"], data["engine"]) == ("simulearn.result/1", "fea")
     assert np.shape(data["joints"]) == (12, 9, 8, 3)
     assert np.shape(data["beams"]) == (12, 12, 3, 4, 3)
@@ -136,6 +139,144 @@ def test_warnings_are_shown_and_do_not_stop(run, tmp_path):
     assert code == 0
     assert err.count("warning") == 12
     assert "beam 3 is 120.00 mm long" in err
+
+
+@pytest.mark.usefixtures("solved")
+def test_what_qualifies_an_answer_is_shown(run, monkeypatch):
+    def solver(grid, material, progress, cancel):
+        return dataclasses.replace(synthetic.result(grid), stable=False, snaps=(Snap(0.944, 10),))
+
+    monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
+    code, out, err = run("simulate", "saddle")
+    assert code == 0
+    assert "unstable balance" in err
+    assert "snaps at 94.4% released" in err
+    assert "material pla-hot-water (" in out
+    assert run("simulate", "saddle", "--json")[2] == ""
+
+
+@pytest.mark.usefixtures("solved")
+def test_a_terminal_says_once_that_something_is_prepared(run, monkeypatch):
+    from simulearn import native
+
+    @contextmanager
+    def compiling(report):
+        report()
+        yield
+
+    monkeypatch.setattr(native, "on_compile", compiling)
+    assert run("simulate", "saddle")[2].count("once on this machine") == 1
+    assert run("simulate", "saddle", "--json")[2] == ""
+
+
+# simulate, many grids
+
+
+@pytest.fixture
+def choosy(monkeypatch):
+    """Let a formula stand in for finite elements; it has no answer for grids of one cell."""
+
+    def solver(grid, material, progress, cancel):
+        if len(grid.joints) == 4:
+            raise ComputationError("no equilibrium at 27 %", "no-equilibrium", "frame 3", "shorten")
+        progress(12, 12)
+        return synthetic.result(grid)
+
+    monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
+
+
+@pytest.mark.usefixtures("choosy")
+def test_many_grids_go_to_a_folder_and_a_failure_does_not_stop_the_others(run, tmp_path):
+    folder, small, torn = tmp_path / "results", tmp_path / "small.json", tmp_path / "torn.json"
+    small.write_text(json.dumps(grid_to_dict(make("flat", (1, 1)))))
+    torn.write_text("{")
+    words = ("simulate", "saddle", small, "cone", torn, "-o", f"{folder}/")
+    code, out, err = run(*words)
+    assert code == 3
+    assert written(folder) == ["cone.json", "saddle.json", "small.json", "torn.json"]
+    assert read_json(folder / "cone.json").grid.dimension > 0
+    failure = json.loads((folder / "small.json").read_text())
+    assert failure == {
+        "schema": "simulearn.failure/1",
+        "code": "no-equilibrium",
+        "where": "frame 3",
+        "message": "no equilibrium at 27 %",
+        "hint": "shorten",
+    }
+    assert json.loads((folder / "torn.json").read_text())["schema"] == "simulearn.failure/1"
+    assert out.count("failed (") == 2
+    assert max(map(len, out.splitlines()[:-1])) <= 80
+    assert "no equilibrium at 27 %; shorten" in err
+    # For machines; without a folder everything is printed.
+    code, out, err = run(*words, "--json")
+    data = json.loads(out)
+    assert (code, err, data["failed"]) == (3, "", 2)
+    assert [row["name"] for row in data["results"]] == ["saddle", str(small), "cone", str(torn)]
+    assert data["results"][0]["file"] == str(folder / "saddle.json")
+    assert "joints" not in data["results"][0]
+    data = json.loads(run("simulate", "saddle", "cone", "--json")[1])
+    assert np.shape(data["results"][1]["joints"]) == (12, 9, 8, 3)
+
+
+def test_many_good_grids_are_code_0(run, solved, tmp_path):
+    assert run("simulate", "saddle", "-o", f"{tmp_path}/one/")[0] == 0
+    assert written(tmp_path / "one") == ["saddle.json"]
+    assert run("simulate", "saddle", "cone", "saddle", "-o", tmp_path / "two")[0] == 0
+    assert written(tmp_path / "two") == ["cone.json", "saddle.json"]
+    assert len(solved) == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["saddle", "b/Saddle.json", "-o", "results/"], "would both be written to saddle.json"),
+        (["saddle", "cone", "-o", "a.json"], "several grids go to one folder"),
+        (["saddle", "cone", "-o", "a/", "-o", "b/"], "several grids go to one folder"),
+        (["saddle", "cone", "-o", "b/Saddle.json/"], "cannot be made"),
+    ],
+)
+def test_names_are_checked_before_many_are_computed(
+    run, solved, tmp_path, monkeypatch, words, says
+):
+    monkeypatch.chdir(tmp_path)
+    Path("b").mkdir()
+    Path("b/Saddle.json").write_text(json.dumps(SADDLE))
+    assert says in refused(run("simulate", *words))
+    assert not solved
+
+
+def test_an_interrupt_keeps_what_is_written(run, monkeypatch, tmp_path):
+    def solver(grid, material, progress, cancel):
+        if len(grid.joints) == 4:
+            raise KeyboardInterrupt
+        return synthetic.result(grid)
+
+    monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver, workers=1))
+    small = tmp_path / "small.json"
+    small.write_text(json.dumps(grid_to_dict(make("flat", (1, 1)))))
+    code, _, _ = run("simulate", "saddle", small, "-o", f"{tmp_path}/out/")
+    assert code == 130
+    assert written(tmp_path / "out") == ["saddle.json"]
+
+
+def test_another_material_replaces_the_grids_own(run, solved, monkeypatch, tmp_path):
+    materials = []
+
+    def solver(grid, material, progress, cancel):
+        materials.append(material)
+        return synthetic.result(grid)
+
+    monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
+    path = tmp_path / "light.toml"
+    path.write_text(
+        (HERE / "pla-hot-water.toml")
+        .read_text("utf-8")
+        .replace("acceleration = 2182", "acceleration = 0"),
+        "utf-8",
+    )
+    assert run("simulate", "saddle", "--material", path)[0] == 0
+    assert materials[0].gravity.acceleration == 0
+    assert "none.toml" in refused(run("simulate", "saddle", "--material", "none.toml"))
 
 
 # validate
@@ -283,7 +424,7 @@ def test_a_binary_file_is_refused(run, tmp_path):
         ("none/out.json", "the folder none does not exist"),
         ("folder.png", "is a folder"),
         ("/proc/out.json", "cannot be written"),  # not even by root
-        ("grid.json", "is the grid"),
+        ("grid.json", "is what is read"),
     ],
 )
 def test_outputs_are_checked_before_computing(run, solved, tmp_path, monkeypatch, name, says):
@@ -347,7 +488,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(run, monkeypatch):
         gc.callbacks.remove(swallowing)
         signal.raise_signal(signal.SIGINT)
 
-    def solver(grid, material, progress):
+    def solver(grid, material, progress, cancel):
         gc.callbacks.append(swallowing)
         gc.collect()
         for _ in range(100):
@@ -361,7 +502,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(run, monkeypatch):
 @pytest.mark.usefixtures("solved")
 def test_a_terminal_gets_a_bar_over_the_frames(run, monkeypatch):
     terminal = Console(stderr=True, force_terminal=True, force_interactive=True)
-    monkeypatch.setattr(cli.grids, "err", terminal)
+    monkeypatch.setattr(cli.progress, "err", terminal)
     code, _, err = run("simulate", "saddle")
     assert code == 0
     assert "12/12" in err
@@ -407,8 +548,10 @@ def test_quick_commands_load_no_solver(words):
     done = simulearn("-X", "importtime", "-m", "simulearn.cli", *words)
     assert done.returncode == 0
     loaded = {line.rsplit("|", 1)[-1].strip() for line in done.stderr.splitlines()}
-    assert "simulearn.cli" in loaded | {"simulearn.cli"}
-    assert loaded.isdisjoint({"jax", "skfem", "scipy.sparse", "matplotlib", "trimesh", "meshio"})
+    assert "simulearn.cli.base" in loaded
+    assert loaded.isdisjoint(
+        {"jax", "numba", "skfem", "scipy.sparse", "matplotlib", "trimesh", "meshio"}
+    )
 
 
 def test_a_saddle_by_finite_elements(tmp_path):
@@ -417,7 +560,8 @@ def test_a_saddle_by_finite_elements(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["engine"] == "fea"
     result = read_npz(path)
-    assert {f.name for f in dataclasses.fields(result) if getattr(result, f.name) is None} == set()
+    empty = {f.name for f in dataclasses.fields(result) if getattr(result, f.name) is None}
+    assert empty == {"model", "bound_mm"}
     middle = result.centres[:, result.grid.fixed]
     np.testing.assert_allclose(middle[0], 0, atol=1e-9)
     # The saddle is symmetric under half a turn about its middle.

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from simulearn import simulate
 from simulearn.grid import read_grid, validate
 from simulearn.material import load_material
-from simulearn.simulate import engine
 
 FOLDER = Path(__file__).parent.parent / "examples"
 
@@ -18,6 +18,6 @@ def test_examples_are_valid(path: Path) -> None:
 
 
 def test_the_random_example_simulates_and_is_stable() -> None:
-    (result,) = engine("fea").simulate([read_grid(FOLDER / "random.json")])
-    assert result.record["stable"]
+    result = simulate(read_grid(FOLDER / "random.json"))
+    assert result.stable
     assert -40 < result.centres[-1][:, 2].min() < -20

@@ -21,6 +21,7 @@ T = TypeVar("T")
 
 MAPS = 30_000  # memory maps; Linux grants a process 65,530
 AFTER = 20  # kernels made since the last count, before maps are counted again
+MANY = 300  # kernels made, after which they are forgotten where maps cannot be counted
 
 
 def double_precision(function: Callable[P, T]) -> Callable[P, T]:
@@ -52,7 +53,8 @@ def keep_kernels() -> None:
 class _Made:
     """Counts the kernels made since maps were last counted."""
 
-    kernels = 0
+    kernels = 0  # since maps were last counted
+    uncounted = 0  # where maps cannot be counted, since kernels were last forgotten
 
     def __call__(self, event: str, duration_secs: float, **_: str | int) -> None:
         self.kernels += event == "/jax/core/compile/backend_compile_duration"
@@ -66,13 +68,15 @@ def make_room() -> None:
     """
     if _made.kernels < AFTER:
         return
+    _made.uncounted += _made.kernels
     _made.kernels = 0
     try:
         with Path("/proc/self/maps").open("rb") as file:
-            maps = sum(1 for _ in file)
-    except OSError:
-        return  # not Linux, where maps have such a limit
-    if maps > MAPS:
+            full = sum(1 for _ in file) > MAPS
+    except OSError:  # not Linux: there is no such limit, but memory is not endless either
+        full = _made.uncounted > MANY
+    if full:
+        _made.uncounted = 0
         jax.clear_caches()
 
 

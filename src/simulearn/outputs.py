@@ -80,17 +80,31 @@ def check(paths: Sequence[Path], grid: Path | None = None) -> None:
             raise InputError(
                 f"{path}: needs a package: pip install 'simulearn[{NEEDS[ending][1]}]'"
             )
-        if path.is_dir():
-            raise InputError(f"{path}: is a folder; name a file")
-        if not path.parent.is_dir():
-            raise InputError(f"{path}: the folder {path.parent} does not exist")
-        if grid is not None and grid.exists() and path.exists() and path.samefile(grid):
-            raise InputError(f"{path}: is the grid; name another file for its result")
-        try:  # trying is the only way to know that root and odd file systems answer to
-            with TemporaryFile(dir=path.parent):
-                pass
-        except OSError as error:
-            raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+        check_place(path, [grid] if grid is not None else [])
+
+
+def check_place(path: Path, sources: Sequence[Path] = ()) -> None:
+    """Make sure that a file can be written.
+
+    Args:
+        path: the file.
+        sources: files that are read, which it may not replace.
+
+    Raises:
+        InputError: it is a folder or a source, or its folder does not exist or is not writable.
+    """
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; name a file")
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: the folder {path.parent} does not exist")
+    for source in sources:
+        if source.exists() and path.exists() and path.samefile(source):
+            raise InputError(f"{path}: is what is read; name another file for the result")
+    try:  # trying is the only test that holds for root and odd file systems, too
+        with TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
 def write(result: Result, path: Path) -> None:

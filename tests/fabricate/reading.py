@@ -41,7 +41,7 @@ def read(text):
     table = np.full((len(numbers), 6), np.nan)  # X Y Z E F S
     names = np.full(len(numbers), "", dtype=object)
     comments: dict[int, str] = {}
-    rows, columns, found = [], [], []
+    rows, columns, values = [], [], []
     for line in parse_gcode_lines("\n".join(numbers), include_comments=True):
         k = line.line_index
         if line.command[0] == ";":
@@ -52,8 +52,8 @@ def read(text):
             if key in COLUMNS:
                 rows.append(k)
                 columns.append(COLUMNS[key])
-                found.append(float(value))
-    table[rows, columns] = found
+                values.append(float(value))
+    table[rows, columns] = values
     command, values = names[which], table[which]
 
     beads, layers = np.zeros(len(lines), dtype=int), np.zeros(len(lines), dtype=int)

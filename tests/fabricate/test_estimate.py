@@ -12,11 +12,11 @@ from simulearn.fabricate.estimate import _corners, _times, durations_of
 from simulearn.grid import make
 
 
-def time_of(way, fastest, acceleration, corner=None):
-    n = len(way)
+def time_of(length, fastest, acceleration, corner=None):
+    n = len(length)
     full = lambda x: np.full(n, float(x)) if np.isscalar(x) else np.array(x, float)  # noqa: E731
     corner = np.zeros(n) if corner is None else np.array(corner, float)
-    return _times(np.array(way, float), full(fastest), full(acceleration), corner)
+    return _times(np.array(length, float), full(fastest), full(acceleration), corner)
 
 
 def test_forty_millimetres_of_bead():
@@ -36,8 +36,8 @@ def test_a_move_in_pieces_takes_as_long_as_in_one():
 
 def test_a_corner_costs_what_its_speed_says():
     v, a, c, d = 50.0, 1000.0, 8.0, 30.0
-    way = d - v**2 / (2 * a) - (v**2 - c**2) / (2 * a)
-    once = v / a + (v - c) / a + way / v
+    length = d - v**2 / (2 * a) - (v**2 - c**2) / (2 * a)
+    once = v / a + (v - c) / a + length / v
     assert time_of([d, d], v, a, [0, c]).sum() == pytest.approx(2 * once)
 
 
@@ -56,22 +56,22 @@ def test_corner_speed(angle, share):
 def test_two_sweeps_in_one_go_are_two_sweeps(seed):
     random = np.random.default_rng(seed)
     n = 30
-    way, fastest = random.uniform(0.01, 8, n), random.uniform(5, 90, n)
+    length, fastest = random.uniform(0.01, 8, n), random.uniform(5, 90, n)
     acceleration, corner = random.uniform(100, 3000, n), random.uniform(0, 40, n)
     # One corner after the other, as firmware does it.
     limit = np.append(np.minimum(corner, np.minimum(fastest, np.append(0, fastest[:-1]))), 0.0)
     speed = limit.copy()
     for k in range(n):
-        speed[k + 1] = min(speed[k + 1], (speed[k] ** 2 + 2 * acceleration[k] * way[k]) ** 0.5)
+        speed[k + 1] = min(speed[k + 1], (speed[k] ** 2 + 2 * acceleration[k] * length[k]) ** 0.5)
     for k in reversed(range(n)):
-        speed[k] = min(speed[k], (speed[k + 1] ** 2 + 2 * acceleration[k] * way[k]) ** 0.5)
+        speed[k] = min(speed[k], (speed[k + 1] ** 2 + 2 * acceleration[k] * length[k]) ** 0.5)
     total = 0.0
     for k in range(n):
         a, b, v = speed[k], speed[k + 1], fastest[k]
-        top = min(v, ((2 * acceleration[k] * way[k] + a**2 + b**2) / 2) ** 0.5)
+        top = min(v, ((2 * acceleration[k] * length[k] + a**2 + b**2) / 2) ** 0.5)
         total += (2 * top - a - b) / acceleration[k]
-        total += (way[k] - (2 * top**2 - a**2 - b**2) / (2 * acceleration[k])) / top
-    assert _times(way, fastest, acceleration, corner).sum() == pytest.approx(total, rel=1e-6)
+        total += (length[k] - (2 * top**2 - a**2 - b**2) / (2 * acceleration[k])) / top
+    assert _times(length, fastest, acceleration, corner).sum() == pytest.approx(total, rel=1e-6)
 
 
 def test_time_is_more_than_way_over_speed_and_tends_to_it():
@@ -79,8 +79,8 @@ def test_time_is_more_than_way_over_speed_and_tends_to_it():
     job = prepare([make("dome")], printer)
     moves = job.moves
     steps = np.diff(moves.places, axis=0, prepend=moves.start[None])
-    way = np.linalg.norm(steps, axis=1)
-    bare = float((np.where(way > 0, way, np.abs(moves.filament)) / (moves.speeds / 60)).sum())
+    length = np.linalg.norm(steps, axis=1)
+    bare = float((np.where(length > 0, length, np.abs(moves.filament)) / (moves.speeds / 60)).sum())
     motion = {"acceleration": 1e6, "acceleration_travel": 1e6, "acceleration_z": 1e6}
     motion |= {"acceleration_e": 1e6, "corner_speed": 1000.0}
     stiff = printer.model_copy(update={"motion": printer.motion.model_copy(update=motion)})

@@ -58,8 +58,8 @@ def test_a_print_is_written_and_told_of(run, tmp_path):
 def test_progress_rises_from_nothing_to_all(run, tmp_path):
     path = tmp_path / "dome.gcode"
     run("gcode", "dome", "--printer", "voron", "-o", path)
-    found = re.findall(r"^M73 P(\d+) R(\d+)$", path.read_text(), re.MULTILINE)
-    percent, rest = np.array(found, dtype=int).T
+    steps = re.findall(r"^M73 P(\d+) R(\d+)$", path.read_text(), re.MULTILINE)
+    percent, rest = np.array(steps, dtype=int).T
     assert percent[0] == 0
     assert (percent[-1], rest[-1]) == (100, 0)
     assert (np.diff(percent) >= 0).all()

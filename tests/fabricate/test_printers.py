@@ -98,7 +98,7 @@ def test_a_wrong_profile_is_refused_by_key(tmp_path, text, words):
     assert "mine.toml" in str(refused.value) or 'printer "' in str(refused.value)
 
 
-def test_an_override_of_what_the_curl_depends_on_is_told():
+def test_an_override_of_what_the_curl_depends_on_has_a_warning():
     overrides = {"nozzle": 0.6, "bed": 55.0, "speed_fill": 1800.0, "fan": False}
     printer = changed("prusa-mk4", print=overrides)
     job = prepare([SMALL], printer)
@@ -113,10 +113,10 @@ def test_an_override_of_what_the_curl_depends_on_is_told():
     assert (read(job.gcode).fed >= 0).all()
 
 
-def test_a_slow_machine_is_told_of():
+def test_a_slow_machine_has_a_warning():
     slow = changed("modix-big60", motion={"speed": 1200.0})
-    said = [w.message for w in prepare([SMALL], slow).warnings]
-    assert any("moves at most 1200 mm/min" in line for line in said)
+    messages = [w.message for w in prepare([SMALL], slow).warnings]
+    assert any("moves at most 1200 mm/min" in line for line in messages)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Whole prints, read back by another parser: all grids of the library, 200 random ones, more."""
 
+from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -8,6 +9,7 @@ import shapely
 from reading import read
 
 from simulearn.fabricate import load_printer, prepare
+from simulearn.fabricate.regions import _cuts
 from simulearn.grid import Grid, Rules, draw_valid, library, make, outline
 from simulearn.material import load_material
 
@@ -113,18 +115,20 @@ def check_directions(job):
     squares: list[float] = []  # share of strokes within 6 degrees of square
     for k in (0, 1, 8, 9):
         half = 1 if k >= 8 else -1
-        seen = dict.fromkeys(range(len(grid.beams)), 0.0)
+        measured = dict.fromkeys(range(len(grid.beams)), 0.0)
         for bead in job.path.layers[k].beads:
             if bead.role not in ("active", "passive", "joint"):
                 continue
             number = int(bead.part.split()[1])
-            points, way, length = strokes_of(bead)
+            points, direction, length = strokes_of(bead)
             if bead.role == "joint":
-                double = (way[:, 0] + 1j * way[:, 1]) ** 2 @ length  # strokes go to and fro
+                double = (
+                    direction[:, 0] + 1j * direction[:, 1]
+                ) ** 2 @ length  # strokes go to and fro
                 mean = np.sqrt(double / abs(double))
                 joints[k, number] = np.array([mean.real, mean.imag])
                 continue
-            u, v = way @ along[number], way @ across[number]
+            u, v = direction @ along[number], direction @ across[number]
             if bead.role == "active":
                 assert half * grid.actuators[number] > 0
                 strokes = length > 2 * length.min() + LINE
@@ -132,7 +136,7 @@ def check_directions(job):
                 x = bead.points @ along[number]
                 y = (bead.points - axis[number, 0]) @ across[number]
                 middle = x[np.abs(y) < LINE / 2 + 0.01]
-                seen[number] = np.ptp(middle) + LINE - 2 * OVERLAP
+                measured[number] = np.ptp(middle) + LINE - 2 * OVERLAP
             else:
                 y = (points - axis[number, 0]) @ across[number]
                 inner = np.abs(y + v * length / 2) < 2.0  # not among the turns
@@ -144,7 +148,7 @@ def check_directions(job):
                 if abs(grid.actuators[number]) in (0, 1) and len(bead.points) > 2:
                     assert (tilt[far] < 0.02).all()
                     squares.append(float(length[inner] @ (tilt < 0.1) / length[inner].sum()))
-        for number, length in seen.items():
+        for number, length in measured.items():
             active = half * grid.actuators[number] > 0
             wanted = abs(grid.actuators[number]) * net[number] if active else 0.0
             assert abs(length - wanted) < 2 * LINE
@@ -282,3 +286,16 @@ def test_a_dangling_beam_is_not_printed():
     assert any("dangles" in warning.message for warning in job.warnings)
     assert len(job.grids[0].beams) == 4
     check_file(job)
+
+
+@pytest.mark.parametrize(
+    ("rest", "reaches"), [(0.0, True), (0.29, True), (0.31, False), (10.0, False)]
+)
+def test_an_actuator_is_printed_to_the_end_where_less_than_half_a_row_is_left(rest, reaches):
+    net = 64.0
+    cuts = _cuts((net - 2 * rest) / net, LINE / 2 / net)
+    assert [role for role, *_ in cuts] == (
+        ["active"] if reaches else ["passive", "active", "passive"]
+    )
+    assert (cuts[0][1], cuts[-1][2]) == (0.0, 1.0)
+    assert all(a[2] == b[1] for a, b in pairwise(cuts))

@@ -15,7 +15,7 @@ HALF = SECTION.width / 2
 
 @st.composite
 def drawn(draw_, most_dropped=3):
-    """Random designs of 1 to 3 cells each way, some beams dropped; valid or not."""
+    """Random designs of 1 to 3 cells along each axis, some beams dropped; valid or not."""
     rules = Rules(
         cells=(draw_(st.integers(1, 3)), draw_(st.integers(1, 3))),
         jitter=draw_(st.sampled_from([0.0, 10.0, 30.0, 60.0])),

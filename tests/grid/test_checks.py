@@ -16,6 +16,7 @@ from simulearn.grid import (
     corner_topology,
     draw,
     drop_beams,
+    errors_of,
     lattice,
     make,
     outline,
@@ -23,6 +24,7 @@ from simulearn.grid import (
 )
 from simulearn.grid.checks import coincident
 from simulearn.grid.outline import outlines
+from simulearn.material import Material
 
 RANGE = TrainingRange(dimension=(60.0, 140.0), beam_length=(30.0, 90.0))
 
@@ -58,6 +60,27 @@ def test_designs_of_a_valid_topology_are_distinguished():
     )
     assert 90 < checks.valid.sum() < 100
     assert 0 < checks.usual.sum() < checks.valid.sum()
+
+
+def test_the_errors_of_many_grids_are_those_of_each():
+    grids = [draw(Rules(jitter=60.0), 2, k) for k in range(30)]
+    grids += [lattice((1, 1), 8.0), lattice((1, 1)), moved(lattice((1, 1)), fixed=2)]
+    grids += [moved(grids[k], fixed=99) for k in range(2)]
+    grids += [moved(grids[k], actuators=[0.0]) for k in range(2)]
+    grids += [moved(grids[0], joints=grids[0].joints * 1e6), lattice((2, 2))]
+    errors = errors_of(grids, [MATERIAL] * len(grids))
+    assert errors == [validate(grid, MATERIAL).errors for grid in grids]
+    assert 5 < errors.count(()) < 35
+    assert errors_of([], []) == []
+
+
+def test_grids_of_other_materials_are_checked_by_theirs():
+    data = MATERIAL.model_dump()
+    data["limits"]["actuator_length"] = 50.0
+    other = Material.model_validate(data)
+    grids = [make("saddle")] * 4
+    errors = errors_of(grids, [MATERIAL, other, MATERIAL, other])
+    assert [bool(some) for some in errors] == [False, True, False, True]
 
 
 def test_a_number_out_of_range_is_not_valid():

@@ -104,7 +104,7 @@ def corners(*angles, **options):
         ((0, 150), (37.5, 112.5, 202.5, 307.5)),  # 210 first, then 150 is the largest part
         ((0, 100), (50, 100 + 130 / 3, 230, 360 - 130 / 3)),  # 260, 130: three parts
         ((0, 120), (30, 90, 180, 300)),  # 120 and 240 in two are tied: the whole gap is divided
-        ((0, 120, 240), (30, 90, 180, 300)),  # tied three ways: between beams 0 and 1
+        ((0, 120, 240), (30, 90, 180, 300)),  # all three tied: between beams 0 and 1
         ((0, 240, 120), (60, 180, 270, 330)),
     ],
 )

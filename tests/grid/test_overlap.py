@@ -29,8 +29,8 @@ def test_two_quadrilaterals(other, answer):
 
 @given(st.lists(st.tuples(st.integers(-3, 3), st.integers(-3, 3)), min_size=1, max_size=6))
 def test_squares_on_a_chessboard_overlap_when_they_are_the_same(places):
-    found = overlaps(np.stack([SQUARE + place for place in places]))
+    result = overlaps(np.stack([SQUARE + place for place in places]))
     n = len(places)
-    assert found.tolist() == [
+    assert result.tolist() == [
         [a, b] for a in range(n) for b in range(a + 1, n) if places[a] == places[b]
     ]

@@ -45,21 +45,21 @@ def only(messages):
 @pytest.mark.parametrize("cells", [(1, 1), (2, 2), (2, 3), (3, 3), (4, 1)])
 @pytest.mark.parametrize("name", library())
 def test_the_library_is_valid_without_a_warning(name, cells):
-    found = validate(make(name, cells), MATERIAL)
-    assert found.valid
-    assert found.to_dict() == {"errors": [], "warnings": []}
+    result = validate(make(name, cells), MATERIAL)
+    assert result.valid
+    assert result.to_dict() == {"errors": [], "warnings": []}
 
 
 @given(drawn())
 def test_what_is_valid_can_be_outlined_when_clean(grid):
-    found = validate(grid, MATERIAL)
-    if found.valid:
+    result = validate(grid, MATERIAL)
+    if result.valid:
         cleaned, removed = clean(grid)
         outline(cleaned, SECTION)
         again = validate(cleaned, MATERIAL)
         assert again.valid
         assert not [w for w in again.warnings if "removed" in w.message]
-        assert set(removed) <= set(found.warnings)
+        assert set(removed) <= set(result.warnings)
 
 
 # Numbers and indices
@@ -89,9 +89,9 @@ def test_what_is_valid_can_be_outlined_when_clean(grid):
     ],
 )
 def test_numbers_and_indices(grid, code, where, message):
-    found = only(errors(grid))
-    assert found[:2] == (code, where)
-    assert message in found[2]
+    result = only(errors(grid))
+    assert result[:2] == (code, where)
+    assert message in result[2]
 
 
 # The grid as a whole
@@ -151,9 +151,9 @@ def test_a_joint_takes_four_beams():
 def test_every_joint_without_an_outline_is_named():
     # Two corners pulled so far out that their beams leave at a few degrees.
     grid = place(place(FLAT, 0, -600, -600), 8, 600, 600)
-    found = [e for e in errors(grid) if e[0] == "joint-outline"]
-    assert [where for _, where, _ in found] == ["joint 0", "joint 8"]
-    for _, where, message in found:
+    result = [e for e in errors(grid) if e[0] == "joint-outline"]
+    assert [where for _, where, _ in result] == ["joint 0", "joint 8"]
+    for _, where, message in result:
         assert message.startswith(where + " has a corner of ")
         assert message.endswith("each corner has 15 to 165")
 
@@ -161,8 +161,8 @@ def test_every_joint_without_an_outline_is_named():
 def test_two_beams_in_one_direction():
     # Joint 1 on the line of beam 0-2 and on that of 0-3.
     grid = Grid([[0, 0], [60, 0], [120, 0], [60, 60]], [[0, 1], [0, 2], [1, 3], [2, 3]], [0] * 4, 0)
-    found = errors(grid)
-    assert ("joint-outline", "joint 0", "beams 0 and 1 leave joint 0 in one direction") in found
+    result = errors(grid)
+    assert ("joint-outline", "joint 0", "beams 0 and 1 leave joint 0 in one direction") in result
 
 
 # Beams and actuators
@@ -170,9 +170,9 @@ def test_two_beams_in_one_direction():
 
 def test_joints_too_close():
     small = lattice((2, 2), 8.0)
-    found = errors(small)
-    assert len(found) == 12
-    assert found[0] == (
+    result = errors(small)
+    assert len(result) == 12
+    assert result[0] == (
         "joints-too-close",
         "beam 0",
         "beam 0 is left an edge of 0.80 mm between joints 0 and 1; each edge needs at least 1 mm",
@@ -222,14 +222,14 @@ def test_long_and_short_beams_are_warned_of():
 
 
 def test_the_training_range_replaces_the_limits():
-    seen = TrainingRange(dimension=(60.0, 90.0), beam_length=(50.0, 64.0))
-    found = warnings(FLAT, training=seen)
-    assert [w[0] for w in found] == ["beam-long"] * 12 + ["grid-size"]
-    assert found[-1][2] == (
+    trained = TrainingRange(dimension=(60.0, 90.0), beam_length=(50.0, 64.0))
+    result = warnings(FLAT, training=trained)
+    assert [w[0] for w in result] == ["beam-long"] * 12 + ["grid-size"]
+    assert result[-1][2] == (
         "the grid reaches 91.92 mm from its fixed joint; the model was trained from 60 to 90 mm"
     )
-    assert [w[0] for w in warnings(lattice((2, 2), 45.0), training=seen)] == ["beam-short"] * 12
-    assert not warnings(lattice((2, 2), 60.0), training=seen)
+    assert [w[0] for w in warnings(lattice((2, 2), 45.0), training=trained)] == ["beam-short"] * 12
+    assert not warnings(lattice((2, 2), 60.0), training=trained)
 
 
 # Overlap
@@ -267,13 +267,13 @@ def test_a_joint_on_a_beam():
 def test_dangling_beams_are_removed_and_said_so():
     # Joint 0 loses one beam, so the other dangles; its joint goes without saying.
     grid = drop_beams(make("saddle"), {0})
-    found = validate(grid, MATERIAL)
-    assert found.valid
-    assert [(w.code, w.where, w.message) for w in found.warnings] == [
+    result = validate(grid, MATERIAL)
+    assert result.valid
+    assert [(w.code, w.where, w.message) for w in result.warnings] == [
         ("dangling-beam", "beam 0", "beam 0 dangles at one end and is removed")
     ]
     cleaned, removed = clean(grid)
-    assert list(found.warnings) == removed
+    assert list(result.warnings) == removed
     assert (len(cleaned.joints), len(cleaned.beams), cleaned.fixed) == (8, 10, 3)
     np.testing.assert_array_equal(cleaned.joints, grid.joints[1:])
     np.testing.assert_array_equal(cleaned.actuators, grid.actuators[1:])
@@ -307,5 +307,5 @@ def test_messages_keep_the_numbers_of_the_design():
 
 @pytest.mark.parametrize("k", range(200))
 def test_few_random_designs_are_refused(k):
-    found = validate(draw(Rules(), 7, k), MATERIAL)
-    assert {e.code for e in found.errors} <= {"overlap", "joints-too-close", "joint-outline"}
+    result = validate(draw(Rules(), 7, k), MATERIAL)
+    assert {e.code for e in result.errors} <= {"overlap", "joints-too-close", "joint-outline"}

@@ -27,7 +27,10 @@ def volume(points, bricks):
     n = bricks.shape[1]
     powers = np.array([p for p in np.ndindex(3, 3, 3) if sum(k for k in p if k > 1) <= 2])
     powers = powers[powers.max(axis=1) < 2] if n == 8 else powers
-    monomials = lambda x: np.prod(x[:, None] ** powers, axis=2)  # noqa: E731
+
+    def monomials(x):
+        return np.prod(x[:, None] ** powers, axis=2)
+
     inverse = np.linalg.inv(monomials(NODES[:n]))
     x, w = np.polynomial.legendre.leggauss(4)
     at = np.stack(np.meshgrid(*[(x + 1) / 2] * 3, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -60,14 +60,14 @@ def test_the_method_goes_down_and_ends_with_whole_steps(learned, monkeypatch):
     goals = Goals.centres(target)
     space = Space.of(make("flat", (1, 1), 52.0), Free())
     problem = Problem(space, goals, places(learned, goals), model=learned.bundle.model)
-    start = problem.found(*space.start)
+    start = problem.scored(*space.start)
     list(islice(gradient(problem, start), 60))
     assert problem.best.error < 0.3 * start.error
     assert np.abs(4 * problem.best.a - np.round(4 * problem.best.a)).max() < 1e-12
 
 
 def test_an_engine_that_cannot_be_differentiated_is_refused(problem):
-    start = problem.found(*problem.space.start)
+    start = problem.scored(*problem.space.start)
     with pytest.raises(InputError, match="learned engine"):
         next(gradient(problem, start))
 

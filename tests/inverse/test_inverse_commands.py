@@ -60,10 +60,10 @@ def test_a_search_leaves_grid_figures_history_and_pictures(run, task_file, tmp_p
 
 def test_an_interrupt_keeps_the_best(run, task_file, tmp_path, monkeypatch):
     from simulearn.inverse import brute_force, search
-    from simulearn.inverse.problem import Did
+    from simulearn.inverse.problem import Advance
 
     def stopped(problem, start):
-        yield from (Did("first"), Did("second"))
+        yield from (Advance("first"), Advance("second"))
         raise KeyboardInterrupt
 
     monkeypatch.setattr(brute_force, "brute_force", stopped)

@@ -33,7 +33,7 @@ def watched(problem):
 @pytest.mark.parametrize("name", WITHOUT_SLOPES)
 def test_it_goes_down_and_asks_for_valid_designs_only(name, problem):
     asked = watched(problem)
-    start = problem.found(*problem.space.start)
+    start = problem.scored(*problem.space.start)
     list(islice(method(name)(problem, start), 4))
     assert problem.best.error < 0.9 * start.error
     count = 0
@@ -47,7 +47,7 @@ def test_it_goes_down_and_asks_for_valid_designs_only(name, problem):
 
 
 def test_the_default_comes_close_within_a_few_iterations(problem):
-    start = problem.found(*problem.space.start)
+    start = problem.scored(*problem.space.start)
     list(islice(method("default")(problem, start), 20))
     assert start.error > 10
     assert problem.best.error < 0.5
@@ -55,7 +55,7 @@ def test_the_default_comes_close_within_a_few_iterations(problem):
 
 def test_brute_force_ends_where_no_single_modification_is_better(problem):
     space = problem.space
-    list(method("brute-force")(problem, problem.found(*space.start)))
+    list(method("brute-force")(problem, problem.scored(*space.start)))
     best = problem.best
     tried = changes(space, best.a)
     errors = problem.errors(
@@ -71,7 +71,7 @@ def test_actuators_alone_or_joints_alone_may_be_free(problem):
         for name in WITHOUT_SLOPES:
             for model in (None, object()):
                 some = Problem(space, problem.goals, toy, model=model)
-                start = some.found(*space.start)
+                start = some.scored(*space.start)
                 list(islice(method(name)(some, start), 12))
                 assert some.best.error < start.error or name == "cma"
 
@@ -82,7 +82,7 @@ def test_any_topology(cells):
     twist = Space.of(make("twist", cells, 60.0), Free())
     goals = Goals.centres(toy(twist.designs(*(part[None] for part in twist.start)))[0])
     problem = Problem(space, goals, toy, model=object())
-    start = problem.found(*space.start)
+    start = problem.scored(*space.start)
     list(islice(method("default")(problem, start), 8))
     assert problem.best.error < 0.2 * start.error
 
@@ -93,7 +93,7 @@ def test_designs_without_an_answer_are_passed_over(problem):
         told[::2] = np.nan
         return told
 
-    start = problem.found(*problem.space.start)
+    start = problem.scored(*problem.space.start)
     problem.places = places
     for name in WITHOUT_SLOPES:
         list(islice(method(name)(problem, start), 2))
@@ -103,7 +103,7 @@ def test_designs_without_an_answer_are_passed_over(problem):
 def test_time_ends_a_search_and_the_best_is_kept(problem):
     ticks = iter(range(1000))
     problem.now, problem.until = lambda: next(ticks), 5
-    start = problem.found(*problem.space.start)
+    start = problem.scored(*problem.space.start)
     with pytest.raises(OutOfTime):
         list(method("default")(problem, start))
     assert problem.best.error <= start.error

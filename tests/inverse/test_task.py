@@ -76,12 +76,14 @@ def test_goals_are_arrays(small):
         (["free", "pairs", "flip"], "z", 'free.pairs.flip is "z"; flip is "x"'),
         (["free", "pairs", "joints"], [[1, 2], [2, 3]], "free.pairs.joints has 2 in two pairs"),
         (["free", "pairs", "joints"], [[0, 1]], "free.pairs.joints has 0, which is not free"),
-        (["limits", "iterations"], 0, "limits.iterations is 0; iterations are a whole number"),
+        (["limits", "iterations"], 0, "limits.iterations is 0; iterations are an integer"),
     ],
 )
 def test_what_is_wrong_is_named_with_its_place(small, path, value, message):
-    with pytest.raises(InputError, match=message):
+    with pytest.raises(InputError, match=message) as error:
         task_from_dict(with_(small, path, value))
+    assert error.value.code != "input"
+    assert error.value.where
 
 
 @pytest.mark.parametrize("data", [[], None, 3, {}, {"schema": "simulearn.task/1"}])

@@ -1,5 +1,7 @@
 """The engine `learned`: grids in, results out, by any bundle."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,7 @@ from simulearn.grid import Rules, draw_valid, make
 from simulearn.learn.common.bundle import save_bundle
 from simulearn.learn.common.first_frame import first_frame
 from simulearn.learn.common.model import Designs
-from simulearn.simulate import engine, read_npz, write_npz
+from simulearn.simulate import Result, engine, one, read_npz, write_npz
 from simulearn.simulate.learned import Learned
 
 
@@ -24,12 +26,12 @@ def learned(folder):
 
 def test_results_come_in_the_order_of_the_grids_whatever_their_topologies(learned):
     grids = [make("saddle"), make("cone", (1, 2)), make("dome"), make("flat", (1, 2))]
-    told = []
-    results = learned.simulate(grids, lambda done, total: told.append((done, total)))
-    assert told[-1] == (48, 48)
+    reported = []
+    results = learned.simulate(grids, lambda done, total: reported.append((done, total)))
+    assert reported[-1] == (48, 48)
     for grid, result in zip(grids, results, strict=True):
         assert result.engine == "learned"
-        assert result.record["model"] == "tiny"
+        assert result.model.name == "tiny"
         np.testing.assert_array_equal(result.grid.actuators, grid.actuators)
         (alone,) = learned.simulate([grid])
         np.testing.assert_allclose(alone.joints, result.joints, atol=0.02)
@@ -63,16 +65,27 @@ def test_only_the_learned_engine_takes_a_model(folder):
 
 
 def test_a_material_is_known_by_its_contents(learned, tmp_path):
+    from simulearn.material import load_material
     from simulearn.material.material import HERE
 
     text = (HERE / "pla-hot-water.toml").read_text("utf-8")
     path = tmp_path / "other.toml"
     path.write_text(text, encoding="utf-8")
-    (result,) = learned.simulate([make("saddle", material=str(path))])
-    assert np.isfinite(result.joints).all()
-    path.write_text(text.replace("acceleration = 2182.0", "acceleration = 0.0"), encoding="utf-8")
+    assert load_material(str(path)).section.width == 7.2
+    (same,) = learned.simulate([make("saddle", material=str(path))])
+    assert isinstance(same, Result)  # the same contents, whatever they are called
+    learnt = load_material("pla-hot-water")
+    path.write_text(re.sub(r"acceleration = [0-9.]+", "acceleration = 0.0", text), "utf-8")
+    changed = load_material(str(path))
+    assert changed.gravity.acceleration == 0
+    refused, answered = learned.simulate([make("saddle", material=str(path)), make("saddle")])
+    assert isinstance(answered, Result)
+    assert refused.code == "material-not-learnt"
+    assert changed.digest[:12] in refused.message
+    assert learnt.digest[:12] in refused.message
+    assert "finite elements" in refused.hint
     with pytest.raises(InputError, match="has learnt pla-hot-water"):
-        learned.simulate([make("saddle", material=str(path))])
+        one(refused)
 
 
 def test_an_answer_that_is_none_is_not_given(learned):
@@ -87,8 +100,10 @@ def test_an_answer_that_is_none_is_not_given(learned):
     from types import SimpleNamespace
 
     broken = Learned(SimpleNamespace(card=learned.bundle.card, model=Broken()))
-    with pytest.raises(ComputationError, match="ask --engine fea"):
-        broken.simulate([make("saddle")])
+    (failure,) = broken.simulate([make("saddle")])
+    assert failure.code == "no-answer"
+    with pytest.raises(ComputationError, match="has no answer for this grid"):
+        one(failure)
 
 
 def test_the_training_ranges_are_the_bundles(learned):

@@ -84,3 +84,29 @@ def test_an_unknown_material_names_the_known_ones() -> None:
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no such file"):
         load_material(tmp_path / "none.toml")
+
+
+def test_a_digest_is_of_the_contents():
+    plain = load_material("pla-hot-water")
+    light = plain.model_copy(
+        update={"gravity": plain.gravity.model_copy(update={"acceleration": 0.0})}
+    )
+    assert light.digest != plain.digest
+    assert light.physics != plain.physics
+    renamed = plain.model_copy(update={"name": "other", "title": "Other"})
+    assert renamed.digest == plain.digest
+    narrow = plain.model_copy(
+        update={"limits": plain.limits.model_copy(update={"beam_length": 50.0})}
+    )
+    assert narrow.digest != plain.digest
+    assert narrow.physics == plain.physics  # no simulation depends on it
+
+
+def test_an_edited_file_is_another_material(tmp_path):
+    text = (HERE / "pla-hot-water.toml").read_text("utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(text, "utf-8")
+    before = load_material(path)
+    path.write_text(text.replace("acceleration = 2182.0", "acceleration = 0.0"), "utf-8")
+    assert load_material(path).gravity.acceleration == 0
+    assert load_material(path).digest != before.digest

@@ -1,5 +1,7 @@
 """Pictures: true to scale, near parts before far ones, colours as they mean, nothing cut off."""
 
+import dataclasses
+from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
 
 import numpy as np
@@ -11,7 +13,9 @@ from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 
 import synthetic
+from simulearn.errors import Message
 from simulearn.grid import make
+from simulearn.schedule import Snap
 from simulearn.show import Camera, animate, combined, deformed, flat, style
 from simulearn.show.deformed import draw_skin
 from simulearn.simulate import Skin, skin
@@ -75,7 +79,10 @@ def test_tints_deepen_with_the_ratio_and_differ_by_half():
 
 
 def test_numbers_may_be_left_out():
-    words = lambda figure: {t.get_text() for t in painted(figure).texts}  # noqa: E731
+
+    def words(figure):
+        return {t.get_text() for t in painted(figure).texts}
+
     assert {str(k) for k in range(12)} <= words(flat(RESULT.grid))
     assert not {str(k) for k in range(12)} & words(flat(RESULT.grid, numbers=False))
 
@@ -85,7 +92,10 @@ def test_what_is_nearer_hides_what_is_farther(upper):
     # Two squares of short strips, one 5 mm above the other, in either order.
     x = np.linspace(0, 20, 11)
     z = [5.0, 0.0] if upper == 0 else [0.0, 5.0]
-    row = lambda h: np.stack([np.repeat(x, 2), np.tile([20.0, 0.0], 11), np.full(22, h)], axis=-1)  # noqa: E731
+
+    def row(h):
+        return np.stack([np.repeat(x, 2), np.tile([20.0, 0.0], 11), np.full(22, h)], axis=-1)
+
     strip = 2 * np.arange(10)[:, None] + np.array([0, 1, 3, 2])
     ratio = np.repeat([1.0, -1.0], 10)
     surface = Skin(
@@ -153,6 +163,28 @@ def test_pictures_do_not_alter_the_settings_of_others():
     before = dict(mpl.rcParams)
     combined(RESULT)
     assert dict(mpl.rcParams) == before
+
+
+def test_pictures_of_several_threads_are_the_same_as_alone():
+    results = [synthetic.result(make(name)) for name in ("saddle", "cone", "wave", "flat")]
+    alone = [pixels(combined(result)) for result in results]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(lambda result: pixels(combined(result)), results))
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_what_qualifies_an_answer_stands_under_its_picture():
+    doubtful = dataclasses.replace(
+        RESULT, stable=False, bound_mm=0.31, snaps=(Snap(0.944, 10),),
+        warnings=(Message("beam-long", "beam 3", "beam 3 is long"),),
+    )  # fmt: skip
+    for draw in (deformed, combined):
+        (line,) = [t.get_text() for t in draw(doubtful).texts if "unstable" in t.get_text()]
+        for words in ("unstable balance", "snaps at 94%", "below 0.31 mm", "beam 3 is long"):
+            assert words in line
+        assert not [t for t in draw(RESULT).texts if "unstable" in t.get_text()]
+        assert (pixels(draw(doubtful))[-6:] == 1).all()
 
 
 def test_the_skin_is_seen_from_outside_only():

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import synthetic
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.grid import grid_to_dict, make
+from simulearn.material import Identity
+from simulearn.schedule import Snap
 from simulearn.simulate import read_json, read_npz, result_to_dict, write_json, write_npz
 
 RESULT = synthetic.result()
@@ -19,7 +21,10 @@ def test_json_has_the_agreed_keys_and_is_read_again(tmp_path):
     path = tmp_path / "a.json"
     write_json(RESULT, path)
     data = json.loads(path.read_text())
-    assert list(data) == ["schema", "grid", "engine", "joints", "beams", "seconds"]
+    assert list(data) == [
+        *("schema", "grid", "engine", "joints", "beams", "seconds"),
+        *("stable", "bound_mm", "snaps", "warnings", "material", "model"),
+    ]
     assert data["schema"] == "simulearn.result/1"
     again = read_json(path)
     np.testing.assert_allclose(again.joints, RESULT.joints, atol=1e-6)
@@ -27,6 +32,48 @@ def test_json_has_the_agreed_keys_and_is_read_again(tmp_path):
     assert grid_to_dict(again.grid) == grid_to_dict(RESULT.grid)
     assert (again.engine, again.seconds) == (RESULT.engine, RESULT.seconds)
     assert again.stress is again.solid is again.displacements is None
+
+
+QUALIFIED = dataclasses.replace(
+    RESULT,
+    stable=False,
+    bound_mm=0.25,
+    snaps=(Snap(0.944, 10), Snap(1.0, 11)),
+    warnings=(Message("beam-long", "beam 3", "beam 3 is 120.00 mm long"),),
+    material=Identity(name="mine", digest="ab" * 32),
+    model=Identity(name="tiny", digest="cd" * 32),
+)
+QUALITIES = ("stable", "bound_mm", "snaps", "warnings", "material", "model")
+
+
+@pytest.mark.parametrize(
+    ("name", "write", "read"),
+    [("a.json", write_json, read_json), ("a.npz", write_npz, read_npz)],
+)
+def test_what_qualifies_an_answer_is_kept(tmp_path, name, write, read):
+    write(QUALIFIED, tmp_path / name)
+    again = read(tmp_path / name)
+    for name in QUALITIES:
+        assert getattr(again, name) == getattr(QUALIFIED, name), name
+
+
+def test_the_machine_form_is_the_agreed_one():
+    data = result_to_dict(QUALIFIED)
+    assert data["snaps"] == [{"released": 0.944, "frame": 10}, {"released": 1.0, "frame": 11}]
+    assert data["warnings"] == [
+        {"code": "beam-long", "where": "beam 3", "message": "beam 3 is 120.00 mm long"}
+    ]
+    assert data["material"] == {"name": "mine", "digest": "ab" * 32}
+    assert (data["stable"], data["bound_mm"]) == (False, 0.25)
+    assert result_to_dict(RESULT)["model"] is result_to_dict(RESULT)["bound_mm"] is None
+
+
+def test_files_of_earlier_versions_are_read(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps({k: v for k, v in GOOD.items() if k not in QUALITIES}))
+    again = read_json(path)
+    assert (again.stable, again.bound_mm, again.snaps, again.warnings) == (True, None, (), ())
+    assert again.material == Identity(name="pla-hot-water", digest="")
 
 
 @pytest.mark.parametrize("solid", [True, False])
@@ -81,6 +128,11 @@ WRONG = {
     ),
     "words": (json.dumps(GOOD | {"beams": "many"}), "beams: is not an array of numbers"),
     "NaN": (json.dumps(GOOD | {"seconds": float("nan")}), "seconds: is not a number"),
+    "a word for stable": (json.dumps(GOOD | {"stable": "yes"}), "stable: is not true or false"),
+    "a word for a bound": (json.dumps(GOOD | {"bound_mm": "1"}), "bound_mm: is not a number"),
+    "one snap": (json.dumps(GOOD | {"snaps": {"released": 1}}), "snaps: is not a list"),
+    "half a snap": (json.dumps(GOOD | {"snaps": [{"released": 1}]}), "snaps: is not an object"),
+    "a name for a model": (json.dumps(GOOD | {"model": "tiny"}), "model: is not an object"),
     "no engine": (json.dumps(GOOD | {"engine": None}), "engine: is not a name"),
 }
 

@@ -8,15 +8,30 @@ import _thread
 import os
 import sys
 import threading
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
 from rich.markup import escape
 
 from simulearn import __version__
-from simulearn.cli import dataset, fabricate, grids, inverse, learn  # noqa: F401  (they add their commands)
+from simulearn.cli import (  # noqa: F401  (they add their commands)
+    dataset,
+    fabricate,
+    grids,
+    inverse,
+    learn,
+    simulate,
+)
 from simulearn.cli.base import app, err
-from simulearn.errors import ComputationError, InputError
+from simulearn.errors import CancelledError, ComputationError, InputError
+from simulearn.files import cache_folder
+
+HINTS = {  # what helps on the command line, by the code of an error
+    "no-answer": "--engine fea may have one",
+    "material-not-learnt": "--engine fea simulates any material, and `simulearn train` learns one",
+    "engine-not-differentiable": "--method default takes any engine",
+}
 
 
 @app.callback(invoke_without_command=True)
@@ -32,15 +47,18 @@ def root(
 def main() -> None:
     """Run the command line; every failure is one line and an exit code."""
     code, hook = None, sys.unraisablehook
+    _keep_kernels()
     sys.unraisablehook = _interrupt_again
     try:
         code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
     except (typer.Abort, KeyboardInterrupt):
         code = 130
     except InputError as error:
-        _fail(str(error), 1)
+        _fail(_with_hint(str(error), HINTS.get(error.code, "")), 1)
     except ComputationError as error:
-        _fail(str(error), 3)
+        _fail(_with_hint(str(error), HINTS.get(error.code, error.hint)), 3)
+    except CancelledError:
+        code = 130
     except Exception as error:
         if hasattr(error, "exit_code") and hasattr(error, "format_message"):  # usage
             _fail(f"{error.format_message()} (see simulearn --help)", int(error.exit_code))
@@ -55,12 +73,32 @@ def main() -> None:
     sys.exit(code)
 
 
+def _keep_kernels() -> None:
+    """Let JAX, if a command needs it, keep its kernels in the user's cache folder.
+
+    JAX reads these variables when it is imported; they hold for this program's process only.
+    """
+    base = cache_folder()
+    if base is None or "JAX_COMPILATION_CACHE_DIR" in os.environ:
+        return
+    folder = base / "compiled"
+    with suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        if os.access(folder, os.W_OK):  # else every run compiles for itself
+            os.environ["JAX_COMPILATION_CACHE_DIR"] = str(folder)
+            os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
+
+
 def _interrupt_again(lost: Any) -> None:
     """Bring back an interrupt that met a library in a callback and was lost there, as in JAX's."""
     if lost.exc_type is KeyboardInterrupt:
         threading.Timer(0.02, _thread.interrupt_main).start()
     else:
         sys.__unraisablehook__(lost)
+
+
+def _with_hint(text: str, hint: str) -> str:
+    return f"{text}; {hint}" if hint else text
 
 
 def _fail(message: str, code: int) -> None:

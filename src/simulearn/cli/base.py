@@ -1,14 +1,19 @@
 """What all commands share: the application, its consoles, and how a grid is named."""
 
+import json
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
+from simulearn.files import replacing
 from simulearn.grid import Grid, Validation, library, make, read_grid, validate
-from simulearn.material import load_material
+from simulearn.material import load_material, read_material
 
 app = typer.Typer(
     name="simulearn",
@@ -24,20 +29,70 @@ GridArgument = Annotated[
     str, typer.Argument(metavar="GRID", help="A grid file (.json), or a name from the library.")
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine form.")]
+MaterialOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="A material (.toml) in place of the grid's own."),
+]
 
 
-def grid_of(name: str) -> Grid:
-    """Return the grid of a file, or of the library if there is no such file."""
+def grid_of(name: str, material: Path | None = None) -> Grid:
+    """Return the grid of a file, or of the library if there is no such file.
+
+    Args:
+        name: of the file, or from the library.
+        material: TOML file of a material in place of the grid's own.
+    """
     if name in library() and not Path(name).exists():
-        return make(name)
+        return of_material(make(name), material)
     try:
-        return read_grid(name, paths=True)
+        return of_material(read_grid(name, paths=True), material)
     except InputError as error:
         if isinstance(error.__cause__, FileNotFoundError) and not Path(name).suffix:
             raise InputError(f"{name}: is neither a file nor a grid of the library") from error
         raise
 
 
+def of_material(grid: Grid, material: Path | None) -> Grid:
+    """Return a grid made of the material in a file, or as it is if none is given.
+
+    Raises:
+        InputError: the file is no material system.
+    """
+    if material is None:
+        return grid
+    read_material(material)
+    if material.suffix.lower() != ".toml":
+        raise InputError(f"{material}: a material is a file that ends in .toml")
+    return replace(grid, material=str(material))
+
+
 def validated(grid: Grid) -> Validation:
     """Return what validation says of a grid, by the limits of its material."""
     return validate(grid, load_material(grid.material))
+
+
+def warn(messages: Iterable[Message], already: Iterable[Message] = ()) -> None:
+    """Print warnings, but for those that are printed already."""
+    for message in messages:
+        if message not in already:
+            err.print(f"[yellow]warning:[/] {escape(message.message)}")
+
+
+def print_files(paths: Iterable[Path | str]) -> None:
+    """Print which files were written."""
+    for path in paths:
+        out.print(f"wrote {escape(str(path))}")
+
+
+def folder_of(path: Path) -> None:
+    """Make a folder, or say why it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be made ({error.strerror})") from error
+
+
+def write_json(path: Path, data: dict[str, Any]) -> None:
+    """Write data for machines."""
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", "utf-8")

@@ -9,24 +9,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TaskID,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 from rich.table import Table
 
 from simulearn.cli.base import Json, app, err, out
+from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
 
 if TYPE_CHECKING:
     from simulearn.dataset import Dataset, Tally
 
-dataset = typer.Typer(help="Generate, pack and look at data sets.", no_args_is_help=True)
+dataset = typer.Typer(help="Generate, pack and inspect data sets.", no_args_is_help=True)
 app.add_typer(dataset, name="dataset")
 
 Packed = Annotated[Path, typer.Argument(metavar="FILE", help="A packed data set (.h5).")]
@@ -60,19 +52,19 @@ def generate(
 
     if scheduler and workers:
         raise InputError("--workers is for this machine; the cluster of --scheduler has its own")
-    asked = sets.read_config(config)
+    wanted = sets.read_config(config)
     if trials is not None:
-        asked = asked.model_copy(update={"trials": trials})
+        wanted = wanted.model_copy(update={"trials": trials})
     if retry:
-        Folder(output, asked).forget_failures()
+        Folder(output, wanted).forget_failures()
     team = (
         sets.cluster_workers(scheduler)
         if scheduler
         else sets.local_workers(workers or os.cpu_count() or 1)
     )
     try:
-        with _rate(quiet=as_json) as tell:
-            tally = sets.generate(asked, output, team, tell)
+        with _rate(quiet=as_json) as progress:
+            tally = sets.generate(wanted, output, team, progress)
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise
@@ -100,8 +92,8 @@ def pack(
     """Pack a generated folder into one HDF5 file."""
     from simulearn import dataset as sets
 
-    with _bar("packing", quiet=as_json) as tell:
-        count = sets.pack(folder, output, partial, tell)
+    with counting("packing", quiet=as_json) as progress:
+        count = sets.pack(folder, output, partial, progress)
     size = output.stat().st_size
     if as_json:
         print(json.dumps({"file": str(output), "trials": count, "bytes": size}))
@@ -125,9 +117,9 @@ def info(
     if output is not None and output.suffix not in (".png", ".pdf", ".svg"):
         raise InputError(f"{output}: a picture ends in .png, .pdf or .svg")
     data = sets.read_dataset(file, stress=False)
-    told, found = sets.checksum(file)
-    if told != found:
-        raise InputError(f"{file}: is damaged (its SHA-256 is {found[:12]}…, not {told[:12]}…)")
+    stored, actual = sets.checksum(file)
+    if stored != actual:
+        raise InputError(f"{file}: is damaged (its SHA-256 is {actual[:12]}…, not {stored[:12]}…)")
     figures = summary(data)
     if output is not None:
         from simulearn.show.dataset import dataset_picture
@@ -188,32 +180,9 @@ def _plain(tally: "Tally") -> dict[str, Any]:
     }
 
 
-def _columns() -> list[Any]:
-    return [
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[words]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(elapsed_when_finished=False),
-    ]
-
-
-@contextmanager
-def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
-    """Yield what is told (done, total)."""
-    if quiet or not err.is_terminal:
-        yield lambda done, total: None
-        return
-    with Progress(*_columns(), console=err, transient=True) as bar:
-        task = bar.add_task(title, total=None, words="")
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
 @contextmanager
 def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
-    """Yield what a run tells its tally to: a bar, or lines where it is no terminal."""
+    """Yield a function that shows a tally: as a bar, or as lines where there is no terminal."""
     if quiet:
         yield lambda tally: None
         return
@@ -221,23 +190,23 @@ def _rate(quiet: bool) -> "Iterator[Callable[[Tally], None]]":
         yield _lines
         return
     # The rate of a long run settles; the last quarter of an hour is what remaining time goes by.
-    with Progress(*_columns(), console=err, transient=True, speed_estimate_period=900) as bar:
-        task: list[TaskID] = []
+    with bar(remaining=True, period=900) as shown:
+        task: list[Any] = []
 
-        def tell(tally: "Tally") -> None:
+        def show(tally: "Tally") -> None:
             done = tally.trials - tally.left
             words = f"{tally.per_minute:.0f}/min" + (
                 f", {tally.failed} failed" if tally.failed else ""
             )
             if not task:
-                task.append(bar.add_task("trials", total=tally.trials, completed=done, words=""))
-            bar.update(task[0], completed=done, words=words)
+                task.append(shown.add_task("trials", total=tally.trials, completed=done, words=""))
+            shown.update(task[0], completed=done, words=words)
 
-        yield tell
+        yield show
 
 
 def _lines(tally: "Tally") -> None:
-    """Tell every hundredth trial, for logs."""
+    """Print every hundredth trial, for logs."""
     new = tally.done + len(tally.reasons)
     if new % 100 == 0 or tally.left == 0:
         err.print(

@@ -4,14 +4,14 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn.cli.base import Json, app, err, grid_of, out
+from simulearn import outputs
+from simulearn.cli.base import Json, MaterialOption, app, grid_of, out, print_files, warn
 from simulearn.errors import InputError
 from simulearn.files import replacing
 
@@ -42,6 +42,7 @@ def gcode_(
     layer: Annotated[
         int | None, typer.Option(min=1, help="Picture this layer alone, with its travels.")
     ] = None,
+    material: MaterialOption = None,
     as_json: Json = False,
 ) -> None:
     """Make the file that prints a grid, and say how long it takes."""
@@ -50,21 +51,19 @@ def gcode_(
     files = output or []
     _check(files, [Path(name) for name in grids])
     names = [Path(name).stem for name in grids]
-    job = prepare([grid_of(name) for name in grids], load_printer(printer), names)
+    job = prepare([grid_of(name, material) for name in grids], load_printer(printer), names)
     if layer is not None and layer > len(job.path.layers):
         raise InputError(f"--layer is {layer}; the print has layers 1 to {len(job.path.layers)}")
     job.gcode  # noqa: B018  (whatever is wrong with it keeps all files from being written)
-    for warning in job.warnings:
-        if not as_json:
-            err.print(f"[yellow]warning:[/] {escape(warning.message)}")
+    if not as_json:
+        warn(job.warnings)
     for path in files:
         WRITERS[path.suffix.lower()](job, path, layer)
     if as_json:
         print(json.dumps({"files": [str(path) for path in files]} | _facts(job), allow_nan=False))
         return
     out.print(_table(job))
-    for path in files:
-        out.print(f"wrote {escape(str(path))}")
+    print_files(files)
 
 
 @app.command("printers")
@@ -94,7 +93,7 @@ def printers_(
     profile = load_printer(name)
     text = profile_text(name)
     if output is not None:
-        _check_place(output, [Path(name)])
+        outputs.check_place(output, [Path(name)])
         with replacing(output) as temporary:
             temporary.write_text(text, encoding="utf-8")
         if not as_json:
@@ -148,22 +147,7 @@ def _check(files: list[Path], grids: list[Path]) -> None:
     for path in files:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: the ending is not one of {' '.join(WRITERS)}")
-        _check_place(path, grids)
-
-
-def _check_place(path: Path, sources: list[Path]) -> None:
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; name a file")
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: the folder {path.parent} does not exist")
-    for source in sources:
-        if source.exists() and path.exists() and path.samefile(source):
-            raise InputError(f"{path}: is what is read; name another file for the result")
-    try:
-        with TemporaryFile(dir=path.parent):
-            pass
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror})") from error
+        outputs.check_place(path, grids)
 
 
 def _facts(job: "Job") -> dict[str, Any]:

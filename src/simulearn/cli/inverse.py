@@ -1,15 +1,28 @@
 """Commands about inverse and hybrid design: optimize, rank."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
 
-from simulearn.cli.base import Json, app, err, grid_of, out
-from simulearn.cli.learn import folder_of
-from simulearn.cli.telling import (
+from simulearn.cli.base import (
+    Json,
+    MaterialOption,
+    app,
+    err,
+    folder_of,
+    grid_of,
+    of_material,
+    out,
+    print_files,
+    warn,
+    write_json,
+)
+from simulearn.cli.progress import preparing
+from simulearn.cli.search_report import (
     live,
     ranking_figures,
     ranking_table,
@@ -17,12 +30,12 @@ from simulearn.cli.telling import (
     search_pictures,
     search_words,
 )
-from simulearn.errors import InputError
+from simulearn.errors import ComputationError, InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import library, write_grid
 
 if TYPE_CHECKING:
-    from simulearn.inverse.keeping import Step
+    from simulearn.inverse import Step, Task
 
 EngineOption = Annotated[
     str | None, typer.Option(help="Another engine than the task's: fea, calculix, beams, learned.")
@@ -54,57 +67,63 @@ def optimize(
         typer.Option(min=0, help="How often to go on from targets that FEA has corrected."),
     ] = None,
     afresh: Annotated[
-        bool, typer.Option("--afresh", help="Forget what an earlier run in the folder found.")
+        bool, typer.Option("--afresh", help="Do not go on from an earlier run in the folder.")
     ] = False,
+    material: MaterialOption = None,
     as_json: Json = False,
 ) -> None:
     """Search for a grid that comes where it is wanted; the same command goes on later."""
+    from simulearn.inverse import Past, read_task
     from simulearn.inverse import optimize as search
-    from simulearn.inverse import read_task
-    from simulearn.inverse.keeping import identity, read_steps, write_steps
+    from simulearn.inverse.keeping import identity, read_past, write_past
 
-    asked = read_task(task, paths=True)
+    wanted = _of_material(read_task(task, paths=True), material)
     limits = {"seconds": seconds, "iterations": iterations, "corrections": corrections}
     named = {"method": method, "engine": engine}
-    asked = asked.model_copy(
+    wanted = wanted.model_copy(
         update={
             **{key: value for key, value in named.items() if value is not None},
-            "limits": asked.limits.model_copy(
+            "limits": wanted.limits.model_copy(
                 update={key: value for key, value in limits.items() if value is not None}
             ),
         }
     )
     folder = output or Path("searches") / Path(task).stem
     folder_of(folder)
-    name = identity(asked, model)
-    before = [] if afresh else read_steps(folder, name)
-    steps = list(before)
-    with live(asked, quiet=as_json) as show:
+    name = identity(wanted, model)
+    past = Past() if afresh else read_past(folder, name)
+    steps = list(past.steps)
+    with preparing(quiet=as_json), live(quiet=as_json) as show:
 
-        def tell(step: "Step") -> None:
+        def progress(step: "Step") -> None:
             steps.append(step)
-            write_steps(folder, name, steps)
+            write_past(folder, name, steps, past.checks)
             show(step)
 
-        found = search(asked, model, tell, tuple(before))
-    write_steps(folder, name, list(found.steps))
-    figures = search_figures(asked, found)
-    write_grid(found.grid, folder / "best.json")
-    _write_json(folder / "summary.json", figures)
-    if found.interrupted:
+        result = search(wanted, model=model, progress=progress, before=past)
+    write_past(folder, name, result.steps, result.checks)
+    figures = search_figures(wanted, result)
+    write_grid(result.grid, folder / "best.json")
+    write_json(folder / "summary.json", figures)
+    warn(result.warnings)
+    if result.interrupted:
         err.print(
-            f"stopped at {found.error_mm:.2f} mm; {escape(str(folder))} has the best so far, "
+            f"stopped at {result.error_mm:.2f} mm; {escape(str(folder))} has the best so far, "
             "and the same command goes on"
         )
         raise KeyboardInterrupt
-    search_pictures(asked, found, folder, model)
+    try:
+        names = search_pictures(wanted, result, folder, model)
+    except (ComputationError, InputError) as error:  # the search itself has succeeded
+        names = []
+        err.print(f"[yellow]the pictures could not be drawn:[/] {escape(str(error))}")
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
-    for line in search_words(figures, found):
+    for line in search_words(figures, result):
         out.print(line)
-    names = "best.json, summary.json, history.csv, error.png, shape.png, changing.gif"
-    out.print(f"wrote {escape(str(folder))}/{names}")
+    names = ["best.json", "summary.json", "history.csv", *names]
+    out.print(f"wrote {escape(str(folder))}/{', '.join(names)}")
 
 
 @app.command()
@@ -135,10 +154,12 @@ def rank(
         Path | None,
         typer.Option(help="The file for it: a task if one was given, else a grid."),
     ] = None,
+    material: MaterialOption = None,
     as_json: Json = False,
 ) -> None:
     """Score every single modification of a grid, and suggest five that differ."""
-    from simulearn.inverse import explore, rank, read_task, write_task
+    from simulearn.inverse import rank, read_task, write_task
+    from simulearn.simulate import Result, one
     from simulearn.simulate import engine as engine_of
 
     if (pick is None) != (to is None):
@@ -147,35 +168,42 @@ def rank(
     for path in files:
         if path.suffix.lower() not in (".png", ".pdf", ".svg", ".json"):
             raise InputError(f"{path}: the ending is not one of .png .pdf .svg .json")
-    task = read_task(design, paths=True) if _is_task(design) else None
+    task = _of_material(read_task(design, paths=True), material) if _is_task(design) else None
     name = engine or (task.engine if task else "learned")
-    answering = engine_of(name, model)
-    found = rank(task, answering) if task else explore(grid_of(design), answering)
+    simulator = engine_of(name, model)
+    with preparing(quiet=as_json):
+        ranking = rank(task or grid_of(design, material), simulator)
     if pick is not None and to is not None:
-        if pick > len(found.best):
-            raise InputError(f"--pick is {pick}; there are {len(found.best)} suggestions")
-        after = found.best[pick - 1].grid
+        if pick > len(ranking.best):
+            raise InputError(f"--pick is {pick}; there are {len(ranking.best)} suggestions")
+        after = ranking.best[pick - 1].grid
         if task:
             write_task(task.with_grid(after), to)
         else:
             write_grid(after, to)
-    figures = ranking_figures(found, name)
+    figures = ranking_figures(ranking, name)
     for path in files:
         if path.suffix.lower() == ".json":
-            _write_json(path, figures)
+            write_json(path, figures)
         else:
             from simulearn.show.inverse import cards
 
-            results = answering.simulate([one.grid for one in found.best])
-            picture = cards(found, results, task.aims if task else None)
+            outcomes = simulator.simulate([suggestion.grid for suggestion in ranking.best])
+            drawn = [k for k, outcome in enumerate(outcomes) if isinstance(outcome, Result)]
+            shown = replace(ranking, best=tuple(ranking.best[k] for k in drawn))
+            picture = cards(shown, [one(outcomes[k]) for k in drawn], task.aims if task else None)
             with replacing(path) as temporary:
                 picture.savefig(temporary)
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
-    out.print(ranking_table(found, goals=task is not None))
-    for path in [*files, *([to] if to else [])]:
-        out.print(f"wrote {escape(str(path))}")
+    out.print(ranking_table(ranking, goals=task is not None))
+    print_files([*files, *([to] if to else [])])
+
+
+def _of_material(task: "Task", material: Path | None) -> "Task":
+    """Return a task whose grid is made of the material in a file."""
+    return task if material is None else task.with_grid(of_material(task.start, material))
 
 
 def _is_task(name: str) -> bool:
@@ -187,8 +215,3 @@ def _is_task(name: str) -> bool:
     except (InputError, ValueError, RecursionError):
         return False  # whoever reads it as a grid says what is wrong
     return isinstance(data, dict) and str(data.get("schema", "")).startswith("simulearn.task/")
-
-
-def _write_json(path: Path, data: dict[str, Any]) -> None:
-    with replacing(path) as temporary:
-        temporary.write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", "utf-8")

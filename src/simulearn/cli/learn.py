@@ -3,18 +3,19 @@
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.progress import TimeRemainingColumn as Remaining
 from rich.table import Table
 
-from simulearn.cli.base import Json, app, err, out
+from simulearn.cli.base import Json, app, err, folder_of, out
+from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
 from simulearn.files import replacing
+from simulearn.material import Material, read_material
 
 if TYPE_CHECKING:
     from simulearn.learn.common.evaluate import Evaluation
@@ -46,9 +47,9 @@ def train(
     from simulearn.learn.config import read_config
     from simulearn.learn.equilibrium.config import EquilibriumConfig
 
-    asked = read_config(config)
-    folder = output or Path("runs") / (asked.name + ("-search" if search else ""))
-    source = data or Path(asked.data)
+    wanted = read_config(config)
+    folder = output or Path("runs") / (wanted.name + ("-search" if search else ""))
+    source = data or Path(wanted.data)
     if not source.is_file():
         raise InputError(
             f"{source}: there is no such data set; make one with `simulearn dataset generate` "
@@ -57,13 +58,13 @@ def train(
     folder_of(folder)
     trials = read_dataset(source, "train")
     if search:
-        if isinstance(asked, EquilibriumConfig):
+        if isinstance(wanted, EquilibriumConfig):
             raise InputError("--search is for the kind paper; this configuration has no noise")
         from simulearn.learn.paper.search import search as search_for
         from simulearn.show.learning import search_picture
 
-        with _bar("runs", quiet=as_json) as tell:
-            figures = search_for(asked, trials, folder, search, tell)
+        with counting("runs", quiet=as_json) as progress:
+            figures = search_for(wanted, trials, folder, search, progress)
         with replacing(folder / "search.png") as temporary:
             search_picture(figures).savefig(temporary)
         if as_json:
@@ -76,16 +77,16 @@ def train(
     from simulearn.show.learning import loss_picture, stages_picture
 
     picture: Callable[[Any, str], Any] = (
-        stages_picture if isinstance(asked, EquilibriumConfig) else loss_picture
+        stages_picture if isinstance(wanted, EquilibriumConfig) else loss_picture
     )
 
     def draw(rows: Any, path: Path) -> None:
         with replacing(path) as temporary:
-            picture(rows, asked.name).savefig(temporary)
+            picture(rows, wanted.name).savefig(temporary)
 
     try:
-        with _epochs(quiet=as_json) as told:
-            bundle, rows, percent = run(asked, trials, folder, told, draw)
+        with _epochs(quiet=as_json) as show:
+            bundle, rows, percent = run(wanted, trials, folder, show, draw)
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise
@@ -109,6 +110,12 @@ def evaluate(
     record: Annotated[
         bool, typer.Option("--record", help="Keep the figures in the model's card.")
     ] = False,
+    material: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="A material (.toml) in place of the one that the trials have."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Compare a model with the trials of a data set that are kept for testing."""
@@ -123,19 +130,23 @@ def evaluate(
         folder_of(output)
     data = read_dataset(dataset, stress=False)
     batches = for_testing(data)
-    with _bar("trials", quiet=as_json) as tell:
-        found = evaluate_(trained, batches, tell)
+    if material is not None:
+        batches = [replace(batch, material=read_material(material)) for batch in batches]
+    for batch in batches:
+        _check_material(bundle.card.name, bundle.card.material, batch.material)
+    with counting("trials", quiet=as_json) as progress:
+        evaluation = evaluate_(trained, batches, progress)
     figures = {
         "model": bundle.card.name,
         "kind": bundle.card.kind,
         "dataset": data.config.name,
         "sha256": data.sha256,
-        **found.errors.summary(),
+        **evaluation.errors.summary(),
     }
     if record:
         add_metrics(bundle, data.config.name, figures)
     if output is not None:
-        _write(found, figures, output)
+        _write(evaluation, figures, output)
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
@@ -144,20 +155,23 @@ def evaluate(
         out.print(f"wrote {escape(str(output))}/figures.json, trials.csv, errors.png, grids.png")
 
 
-def folder_of(path: Path) -> None:
-    """Make a folder, or say why it cannot be made."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be made ({error.strerror})") from error
+def _check_material(model: str, learnt: Material, given: Material) -> None:
+    """Raise where trials are not of the material that a model has learnt."""
+    if given.physics != learnt.physics:
+        raise InputError(
+            f'the trials are of {given.identity}; the model "{model}" has learnt '
+            f"{learnt.identity}; name another with --material",
+            "material-not-evaluated",
+            "material",
+        )
 
 
-def _write(found: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
+def _write(evaluation: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
     from simulearn.show.learning import error_picture, grids_picture
 
     with replacing(folder / "figures.json") as temporary:
         temporary.write_text(json.dumps(figures, indent=1) + "\n", "utf-8")
-    e = found.errors
+    e = evaluation.errors
     lines = ["trial,dimension_mm,error_mm,error_percent,rotation_deg,gap_mm,motion_mm"]
     rows = zip(
         e.numbers, e.dimension, e.vertex[:, -1], e.percent[:, -1], e.rotation[:, -1], e.gap[:, -1],
@@ -168,7 +182,7 @@ def _write(found: "Evaluation", figures: dict[str, Any], folder: Path) -> None:
         temporary.write_text("\n".join(lines) + "\n", "utf-8")
     for name, picture in (("errors", error_picture), ("grids", grids_picture)):
         with replacing(folder / f"{name}.png") as temporary:
-            picture(found, figures["model"]).savefig(temporary)
+            picture(evaluation, figures["model"]).savefig(temporary)
 
 
 def _table(figures: dict[str, Any]) -> Table:
@@ -201,20 +215,8 @@ def _best(figures: dict[str, Any]) -> str:
 
 
 @contextmanager
-def _bar(title: str, quiet: bool) -> Iterator[Callable[[int, int], None]]:
-    """Yield what is told (done, total)."""
-    if quiet or not err.is_terminal:
-        yield lambda done, total: None
-        return
-    columns = (TextColumn(title), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=err, transient=True) as bar:
-        task = bar.add_task(title, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
-
-
-@contextmanager
 def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
-    """Yield what a run tells: a bar on a terminal, a line for each epoch elsewhere."""
+    """Yield a function that shows a run: a bar on a terminal, a line for each epoch elsewhere."""
     if quiet:
         yield lambda row, done, total: None
         return
@@ -226,24 +228,15 @@ def _epochs(quiet: bool) -> Iterator[Callable[[Any, int, int], None]]:
 
         yield line
         return
-    columns = (
-        TextColumn("updates"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[words]}"),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        Remaining(elapsed_when_finished=False),
-    )
-    with Progress(*columns, console=err, transient=True, speed_estimate_period=600) as bar:
-        task = bar.add_task("updates", total=None, words="")
+    with bar(remaining=True, period=600) as shown:
+        task = shown.add_task("updates", total=None, words="")
 
-        def tell(row: Any, done: int, total: int) -> None:
-            bar.update(task, completed=done, total=total)
+        def show(row: Any, done: int, total: int) -> None:
+            shown.update(task, completed=done, total=total)
             if row is not None:
-                bar.update(task, words=_words(row))
+                shown.update(task, words=_words(row))
 
-        yield tell
+        yield show
 
 
 def _words(row: Any) -> str:

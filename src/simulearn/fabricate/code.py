@@ -22,13 +22,13 @@ NUMBER = re.compile(r"^[Nn]\d+\s*")
 COMMAND = re.compile(r"(?=\b[GgMm]\d)")
 HEAD = re.compile(r"([GM])\s*0*(\d+(?:\.\d+)?)", re.IGNORECASE)
 SHOWN = ("M117", "M118")  # their text is shown, not done
-ORIGIN = "moves the origin, and with it the whole print"
+ORIGIN = "moves the origin, and with it the print"
 FORBIDDEN = {
     "G20": "counts in inches, and files are in millimetres",
     "G52": ORIGIN,
     "M206": ORIGIN,
     "M428": ORIGIN,
-    "M851": "moves the probe, and with it the height of the whole print",
+    "M851": "moves the probe, and with it the height of the print",
     "M92": "changes how far the machine moves",
     "M200": "changes how E is counted",
     "SET_GCODE_OFFSET": ORIGIN,

@@ -10,7 +10,7 @@ from simulearn.grid.lattice import drop_beams, lattice
 from simulearn.grid.library import library, make
 from simulearn.grid.outline import CornerTopology, Outline, corner_topology, outline
 from simulearn.grid.sketch import sketch
-from simulearn.grid.validation import Validation, validate
+from simulearn.grid.validation import Validation, errors_of, validate
 
 __all__ = [
     "Checks",
@@ -28,6 +28,7 @@ __all__ = [
     "draw",
     "draw_valid",
     "drop_beams",
+    "errors_of",
     "grid_from_dict",
     "grid_to_dict",
     "lattice",

@@ -139,9 +139,12 @@ def coincident(joints: Numbers, most: int) -> Indices:
 
 
 def lengths(beams: Indices, joints: Numbers, shape: Outlines) -> Lengths:
-    """Return the lengths of the beams of designs (T, J, 2).
+    """Return the lengths of the beams of designs; they mean nothing where an end has no outline.
 
-    They mean nothing for beams whose ends have no outline.
+    Args:
+        beams: (B, 2) joint indices.
+        joints: (T, J, 2) mm.
+        shape: outlines of the same designs.
     """
     along = joints[:, beams[:, 1]] - joints[:, beams[:, 0]]
     full = np.hypot(along[..., 0], along[..., 1])
@@ -167,14 +170,27 @@ def too_short(actuators: Numbers, net: Numbers, limits: Limits) -> Mask:
 
 
 def usual_length(limits: Limits, training: TrainingRange | None) -> tuple[float, float]:
-    """Return the least and most usual length of a beam between the centres of its joints, mm."""
+    """Return the least and most usual length of a beam between the centres of its joints, mm.
+
+    Args:
+        limits: the material's.
+        training: the grids that the model that will answer was trained on; its lengths replace
+            the material's.
+    """
     return training.beam_length if training else (0.0, limits.beam_length)
 
 
 def unusual(
     measured: Lengths, limits: Limits, training: TrainingRange | None
 ) -> tuple[Mask, Mask, Mask]:
-    """Return which beams (T, B) are long, which are short and which have a short net length."""
+    """Return which beams (T, B) are long, which are short and which have a short net length.
+
+    Args:
+        measured: lengths of the beams.
+        limits: the material's.
+        training: the grids that the model that will answer was trained on; its lengths replace
+            the material's.
+    """
     least, most = usual_length(limits, training)
     return (
         measured.full > most + ROUNDING,
@@ -184,7 +200,12 @@ def unusual(
 
 
 def outside(dimension: Numbers, training: TrainingRange) -> Mask:
-    """Return which dimensions, mm, lie outside those of the training."""
+    """Return which dimensions lie outside those of the training.
+
+    Args:
+        dimension: mm, largest distance from the fixed joint to another joint.
+        training: the grids that a model was trained on.
+    """
     least, most = training.dimension
     return ~((dimension >= least - ROUNDING) & (dimension <= most + ROUNDING))
 

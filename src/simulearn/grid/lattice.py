@@ -43,7 +43,7 @@ def lattice(
         for step, inside in ((1, i < nx), (nx + 1, j < ny))
         if inside
     ]
-    # In whole numbers, so that ties are ties.
+    # In integers, so that ties are ties.
     fixed = int(np.argmin(((2 * place - (nx, ny)) ** 2).sum(axis=1)))
     joints = (place - place[fixed]) * float(length)
     return Grid(joints, beams, np.zeros(len(beams)), fixed, material)

@@ -7,7 +7,7 @@ errors can be meshed. The rules themselves are in `grid.structure` and `grid.che
 Rules and limits: Yang et al., SimuLearn, UIST 2020, Figure 15, and the authors' published tool.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -21,6 +21,7 @@ from simulearn.grid.checks import (
     Connections,
     Lengths,
     TrainingRange,
+    check_designs,
     coincident,
     collisions,
     connections,
@@ -110,6 +111,30 @@ def validate(
             warnings += _size(grid, at, training)
     net = {b: float(measured.net[0, b]) for b in np.flatnonzero(faced).tolist()}
     return Validation(tuple(errors), tuple(warnings), net)
+
+
+def errors_of(grids: Sequence[Grid], materials: Sequence[Material]) -> list[tuple[Message, ...]]:
+    """Return the errors of each of many grids, as `validate` gives them; none where it is valid.
+
+    Grids of one topology and material are checked together, which takes a tenth of the time.
+
+    Args:
+        grids: the designs.
+        materials: the material system of each.
+    """
+    alike: dict[tuple[object, ...], list[int]] = {}
+    for k, (grid, material) in enumerate(zip(grids, materials, strict=True)):
+        key = (grid.joints.shape, grid.actuators.shape, grid.beams.tobytes(), grid.fixed)
+        alike.setdefault((*key, material.digest), []).append(k)
+    valid = np.zeros(len(grids), bool)
+    for numbers in alike.values():
+        first, material = grids[numbers[0]], materials[numbers[0]]
+        if len(numbers) > 1 and not structure_errors(first):
+            joints = np.stack([grids[k].joints for k in numbers])
+            actuators = np.stack([grids[k].actuators for k in numbers])
+            checks = check_designs(first.beams, first.fixed, joints, actuators, material)
+            valid[numbers] = checks.valid
+    return [() if valid[k] else validate(grid, materials[k]).errors for k, grid in enumerate(grids)]
 
 
 def _coincidences(grid: Grid, pairs: list[list[int]]) -> Iterator[Message]:

@@ -3,8 +3,9 @@
 from simulearn.inverse.changes import Change, changes
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals, Vertex
-from simulearn.inverse.ranking import Ranking, Suggestion, explore, rank
-from simulearn.inverse.search import METHODS, Outcome, optimize
+from simulearn.inverse.keeping import Past, Step
+from simulearn.inverse.ranking import Ranking, Suggestion, rank
+from simulearn.inverse.search import METHODS, SearchResult, optimize
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import (
     Task,
@@ -19,15 +20,16 @@ __all__ = [
     "Change",
     "Check",
     "Goals",
-    "Outcome",
+    "Past",
     "Ranking",
+    "SearchResult",
     "Space",
+    "Step",
     "Suggestion",
     "Task",
     "Vertex",
     "changes",
     "check",
-    "explore",
     "optimize",
     "rank",
     "read_task",

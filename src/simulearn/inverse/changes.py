@@ -41,14 +41,14 @@ def changes(space: Space, a: Array) -> list[Change]:
     Whether what they lead to is valid, `Space.valid` says.
     """
     none = np.zeros(len(space.motions)), np.zeros(len(space.groups))
-    found = []
+    modifications = []
     for unit in space.units:
         directions = EIGHT if len(unit.slides) == 2 else np.array([[1.0], [-1.0]])
         for direction in directions:
             dx = none[0].copy()
             dx[list(unit.slides)] = space.move * direction
-            words = f"move {_named('joint', unit.joints)} {_way(space, unit.joints[0], dx)}"
-            found.append(Change(dx, none[1], "joint", unit.joints, words))
+            words = f"move {_named('joint', unit.joints)} {_direction(space, unit.joints[0], dx)}"
+            modifications.append(Change(dx, none[1], "joint", unit.joints, words))
     for q, group in enumerate(space.groups):
         for step in (space.ratio, -space.ratio):
             ratio = round(a[q] + step, 9) + 0.0
@@ -57,8 +57,8 @@ def changes(space: Space, a: Array) -> list[Change]:
             da = none[1].copy()
             da[q] = ratio - a[q]
             words = f"{_named('actuator', group)}: {_signed(a[q])} → {_signed(ratio)}"
-            found.append(Change(none[0], da, "actuator", group, words))
-    return found
+            modifications.append(Change(none[0], da, "actuator", group, words))
+    return modifications
 
 
 def _named(part: str, indices: tuple[int, ...]) -> str:
@@ -73,7 +73,7 @@ def _signed(ratio: float) -> str:
     return f"{ratio:+.3g}" if ratio else "0"
 
 
-def _way(space: Space, joint: int, dx: Array) -> str:
+def _direction(space: Space, joint: int, dx: Array) -> str:
     """Return where a joint goes, as an arrow and a length."""
     u, v = np.einsum("p,pc->c", dx, space.motions[:, joint])
     arrow = ARROWS[round(np.arctan2(v, u) / (np.pi / 4)) % 8]

@@ -1,47 +1,49 @@
-"""The check of an answer: the design simulated again by finite elements, and what to learn from it.
+"""The check of a design: simulated again by finite elements, and what follows from the difference.
 
-An engine's mistake hardly changes from a design to its neighbours. So targets moved by the mistake
-at the best design make the engine look for what finite elements will confirm.
+An engine's error hardly changes from a design to its neighbours. So targets moved by the error at
+the best design make the engine search for what finite elements will confirm.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import ComputationError
+from simulearn.errors import Cancel, CancelledError, stop_if
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
-from simulearn.simulate import Result, Simulator, engine
+from simulearn.simulate import Failure, Outcome, Result, Simulator, engine
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Check:
-    """A design by the engine that found it and by finite elements.
+    """A design by the engine of the search and by finite elements.
 
     Attributes:
         grid: the design.
-        result: by the engine.
-        fea: by finite elements; None where they give no answer.
-        why: why they give none.
         error_mm: of the engine's shape.
-        error_fea_mm: of the shape by finite elements.
+        error_fea_mm: of the shape by finite elements; None where they give no answer.
+        why: why they give none.
         apart_mm: weighted mean distance between the two, over the goals.
-        bound_mm: what the engine expects its error to stay below, where it tells.
+        bound_mm: what the engine expects its error to stay below, where it estimates that.
         shift: (G, 3) mm, from finite elements to the engine.
+        phase: of the search that ended with this design.
+        result: by the engine; None where it has no full rollout, or in an earlier run.
+        fea: by finite elements; None where they give no answer, or in an earlier run.
     """
 
     grid: Grid
-    result: Result
-    fea: Result | None
-    why: str | None
     error_mm: float
-    error_fea_mm: float | None
-    apart_mm: float | None
-    bound_mm: float | None
-    shift: Array | None
+    error_fea_mm: float | None = None
+    why: str = ""
+    apart_mm: float | None = None
+    bound_mm: float | None = None
+    shift: Array | None = None
+    phase: int = 0
+    result: Result | None = field(default=None, repr=False)
+    fea: Result | None = field(default=None, repr=False)
 
     @property
     def agrees(self) -> bool | None:
@@ -49,6 +51,11 @@ class Check:
         if self.apart_mm is None or self.bound_mm is None:
             return None
         return self.apart_mm <= self.bound_mm
+
+    @property
+    def shape(self) -> Result | None:
+        """By finite elements where they answered in this run, else by the engine."""
+        return self.fea or self.result
 
     def better_than(self, other: "Check | None") -> bool:
         """Whether finite elements prefer this one."""
@@ -59,27 +66,61 @@ class Check:
         return mine < (inf if other.error_fea_mm is None else other.error_fea_mm)
 
 
-def check(grid: Grid, goals: Goals, asked: Simulator) -> Check:
-    """Return what an engine and finite elements say of a design."""
-    (result,) = asked.simulate([grid])
-    here = goals.points(result.joints[-1], result.beams[-1])
-    fea, why = None, None
-    try:
-        fea = result if asked.name == "fea" else engine("fea").simulate([grid])[0]
-    except ComputationError as error:
-        why = str(error)
-    bound = result.record.get("bound_mm")
-    there = None if fea is None else goals.points(fea.joints[-1], fea.beams[-1])
-    return Check(
+def check(
+    grid: Grid,
+    points: Array,
+    goals: Goals,
+    simulator: Simulator,
+    cancel: Cancel | None = None,
+    until: Cancel | None = None,
+    phase: int = 0,
+) -> Check:
+    """Return what an engine and finite elements say of a design.
+
+    Args:
+        grid: the design.
+        points: (G, 3) mm, where the goals' vertices come to by the engine.
+        goals: what is wanted.
+        simulator: the engine of the search.
+        cancel: stops the check.
+        until: ends the check without an answer of finite elements.
+        phase: of the search that ended with the design.
+
+    Raises:
+        CancelledError: the check was stopped.
+    """
+    own = _outcome(simulator, grid, cancel, until)
+    truth = own if simulator.name == "fea" else _outcome(engine("fea"), grid, cancel, until)
+    result = own if isinstance(own, Result) else None
+    known = Check(
         grid=grid,
+        error_mm=float(goals.error(points)),
+        bound_mm=None if result is None else result.bound_mm,
+        phase=phase,
         result=result,
-        fea=fea,
-        why=why,
-        error_mm=float(goals.error(here)),
-        error_fea_mm=None if there is None else float(goals.error(there)),
-        apart_mm=None
-        if there is None
-        else float(np.linalg.norm(here - there, axis=-1) @ goals.weights),
-        bound_mm=None if bound is None else float(bound),
-        shift=None if there is None else here - there,
     )
+    if not isinstance(truth, Result):
+        why = "the time was over before they had one" if truth is None else truth.message
+        return replace(known, why=why)
+    there = goals.points(truth.joints[-1], truth.beams[-1])
+    return replace(
+        known,
+        fea=truth,
+        error_fea_mm=float(goals.error(there)),
+        apart_mm=float(np.linalg.norm(points - there, axis=-1) @ goals.weights),
+        shift=points - there,
+    )
+
+
+def _outcome(
+    simulator: Simulator, grid: Grid, cancel: Cancel | None, until: Cancel | None
+) -> Outcome | None:
+    """Return an engine's outcome; None if the time was over before it had one."""
+    try:
+        (outcome,) = simulator.simulate([grid], cancel=until or cancel)
+    except CancelledError:
+        stop_if(cancel)
+        return None
+    if isinstance(outcome, Failure) and outcome.invalid:
+        raise outcome.error  # such as an engine that is not installed
+    return outcome

@@ -1,7 +1,8 @@
 """CMA-ES: samples from a normal distribution that learns its shape from the better half.
 
-Actuators are whole steps (the `cma` package's integer variables); a sample whose actuators are too
-short is mended, one whose joints lie impossibly ranks last without being simulated.
+Actuators are multiples of the step (the `cma` package's integer variables); a sample whose
+actuators are too short is mended, one whose joints lie impossibly ranks last without being
+simulated.
 """
 
 from collections.abc import Iterator
@@ -9,15 +10,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from simulearn.errors import InputError
-from simulearn.inverse.problem import Did, Found, Problem
+from simulearn.inverse.problem import Advance, Problem, Scored
 
 SPREAD = 1.5  # steps, standard deviation to begin with
 FARTHEST = 1e3  # mm, that a joint may go
 LOST = 1e4  # mm, the error of what is not valid
 
 
-def cma_es(problem: Problem, start: Found) -> Iterator[Did]:
-    """Search from a design; yield what each generation did.
+def cma_es(problem: Problem, start: Scored) -> Iterator[Advance]:
+    """Search from a design; yield what each generation advance.
 
     Raises:
         InputError: the package `cma` is not installed.
@@ -42,12 +43,12 @@ def cma_es(problem: Problem, start: Found) -> Iterator[Did]:
         }
         strategy = cma.CMAEvolutionStrategy(np.r_[begin.x, begin.a] / scale, SPREAD, options)
         while not strategy.stop():
-            asked = strategy.ask()
-            points = np.array(asked) * scale
+            samples = strategy.ask()
+            points = np.array(samples) * scale
             x = points[:, :p]
             a = np.array([space.nearest(*pair) for pair in zip(x, points[:, p:], strict=True)])
             errors = problem.errors(x, a)
-            strategy.tell(asked, np.where(np.isfinite(errors), errors, LOST).tolist())
-            yield Did(f"generation of {size}, spread {strategy.sigma:.2f} steps")
+            strategy.tell(samples, np.where(np.isfinite(errors), errors, LOST).tolist())
+            yield Advance(f"generation of {size}, spread {strategy.sigma:.2f} steps")
         # Again, from where it came to, with twice the samples, as restarts of CMA-ES do.
         begin, size = problem.best or begin, 2 * size

@@ -1,9 +1,10 @@
 """Gradient descent through the learned engine: joints slide, actuators are relaxed, then snap.
 
 The derivative of the error by all joints and ratios costs about as much as two simulations
-(`learn.slopes`); L-BFGS goes down along it. Then actuators snap to whole steps, joints go on alone,
-and single steps of actuators are scored until none improves. After that it begins again from other
-ratios. What is relaxed is no design yet: only snapped designs are scored and remembered.
+(`learn.equilibrium.slopes`); L-BFGS goes down along it. Then actuators snap to multiples of the
+step, joints go on alone, and single steps of actuators are scored until none improves. After that
+it begins again from other ratios. What is relaxed is no design yet: only snapped designs are scored
+and remembered.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.problem import Did, Found, Problem
+from simulearn.inverse.problem import Advance, Problem, Scored
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium.model import Equilibrium
 from simulearn.learn.equilibrium.prediction import TOLERANCE
@@ -26,15 +27,15 @@ Array = NDArray[np.float64]
 Value = Callable[[Array], tuple[float, Array]]  # variables -> value, gradient
 
 SOFT = 1.0  # mm, below which a distance counts as its square, so that the error is smooth
-UNIT = 20.0  # mm that count as much as a whole ratio
+UNIT = 20.0  # mm that count as much as a ratio of 1
 RELAXED, SLIDES = 40, 20  # iterations with and without actuators, at most
 MEMORY = 10  # pairs that L-BFGS keeps
 SHORTEST = 1e-3  # of its first step, where a line search gives up
 GAIN = 1e-3  # less in an iteration is little
 
 
-def gradient(problem: Problem, start: Found) -> Iterator[Did]:
-    """Search from a design; yield what each iteration did.
+def gradient(problem: Problem, start: Scored) -> Iterator[Advance]:
+    """Search from a design; yield what each iteration advance.
 
     Raises:
         InputError: the engine cannot be differentiated.
@@ -42,8 +43,10 @@ def gradient(problem: Problem, start: Found) -> Iterator[Did]:
     model = problem.model
     if not isinstance(model, Equilibrium):
         raise InputError(
-            "the method gradient goes through a learned engine of kind equilibrium or beams; "
-            "ask another method of this one"
+            "the method gradient needs a learned engine of kind equilibrium or beams, which can "
+            "be differentiated; use another method with this engine",
+            "engine-not-differentiable",
+            "method",
         )
     begin, p = start, len(start.x)
     while True:
@@ -52,17 +55,17 @@ def gradient(problem: Problem, start: Found) -> Iterator[Did]:
         for lower, value in lbfgs(Relaxed(problem, model, None), z, most, RELAXED):
             z = lower
             problem.going()
-            yield Did(f"relaxed, {value:.2f} mm", whole=False)
-        snapped = problem.found(z[:p], problem.space.nearest(z[:p], z[p:] / UNIT))
-        yield Did(f"actuators in whole steps, {snapped.error:.2f} mm")
+            yield Advance(f"relaxed, {value:.2f} mm", complete=False)
+        snapped = problem.scored(z[:p], problem.space.nearest(z[:p], z[p:] / UNIT))
+        yield Advance(f"actuators in steps, {snapped.error:.2f} mm")
         yield from _polished(problem, model, snapped)
         best = problem.best or start
         drawn = 2 * problem.source.random(len(best.a)) - 1
         share = problem.source.random(len(best.a)) < 0.5
-        begin = Found(best.x, np.where(share, drawn, best.a), best.points, best.error)
+        begin = Scored(best.x, np.where(share, drawn, best.a), best.points, best.error)
 
 
-def _polished(problem: Problem, model: Equilibrium, now: Found) -> Iterator[Did]:
+def _polished(problem: Problem, model: Equilibrium, now: Scored) -> Iterator[Advance]:
     """Slide joints, then step actuators, in turn, while it helps."""
     p, space = len(now.x), problem.space
     while True:
@@ -70,18 +73,18 @@ def _polished(problem: Problem, model: Equilibrium, now: Found) -> Iterator[Did]
         for lower, value in lbfgs(Relaxed(problem, model, now.a), x, np.full(p, np.inf), SLIDES):
             x = lower
             problem.going()
-            yield Did(f"joints alone, {value:.2f} mm", whole=False)
+            yield Advance(f"joints alone, {value:.2f} mm", complete=False)
         q = len(now.a)
         a = np.concatenate([now.a[None], now.a + space.ratio * np.vstack([np.eye(q), -np.eye(q)])])
-        told = problem.points(np.repeat(x[None], len(a), axis=0), a)
-        errors = problem.error(told)
+        points = problem.points(np.repeat(x[None], len(a), axis=0), a)
+        errors = problem.error(points)
         k = int(errors.argmin())
         if not errors[k] < now.error:
             return
-        now = Found(x, a[k], told[k], float(errors[k]))
+        now = Scored(x, a[k], points[k], float(errors[k]))
         if k == 0:
             return
-        yield Did(f"one actuator stepped, {now.error:.2f} mm")
+        yield Advance(f"one actuator stepped, {now.error:.2f} mm")
 
 
 @dataclass(eq=False)
@@ -106,15 +109,15 @@ class Relaxed:
         flat = np.full_like(z, 0.0)
         if space.net(x) is None:
             return np.inf, flat
-        told = fitting_slopes(
+        slope = fitting_slopes(
             self.model, space.designs(x[None], a[None]), self.problem.goals, SOFT, TOLERANCE
         )
-        if not told.converged[0] or not np.isfinite(told.cost[0]):
+        if not slope.converged[0] or not np.isfinite(slope.cost[0]):
             return np.inf, flat
-        flat[:p] = np.einsum("pjc,jc->p", space.motions, told.flat[0])
+        flat[:p] = np.einsum("pjc,jc->p", space.motions, slope.flat[0])
         if self.held is None:
-            flat[p:] = [told.actuators[0, list(group)].sum() / UNIT for group in space.groups]
-        return float(told.cost[0]), flat
+            flat[p:] = [slope.actuators[0, list(group)].sum() / UNIT for group in space.groups]
+        return float(slope.cost[0]), flat
 
 
 def fitting_slopes(
@@ -160,15 +163,15 @@ def lbfgs(value: Value, z: Array, most: Array, iterations: int) -> Iterator[tupl
     now, slope = value(z)
     kept: list[tuple[Array, Array]] = []
     for _ in range(iterations):
-        way = -_two_loops(slope, kept)
-        if way @ slope >= 0:
-            way, kept = -slope, []
-        length = 1.0 if kept else min(1.0, 10 / max(float(np.abs(way).max()), 1e-12))
+        direction = -_two_loops(slope, kept)
+        if direction @ slope >= 0:
+            direction, kept = -slope, []
+        length = 1.0 if kept else min(1.0, 10 / max(float(np.abs(direction).max()), 1e-12))
         shortest = SHORTEST * length
         while True:
             if length < shortest:
                 return
-            new = np.clip(z + length * way, -most, most)
+            new = np.clip(z + length * direction, -most, most)
             then, there = value(new)
             if then < now + 1e-4 * float(slope @ (new - z)):
                 break
@@ -183,7 +186,7 @@ def lbfgs(value: Value, z: Array, most: Array, iterations: int) -> Iterator[tupl
 
 
 def _two_loops(slope: Array, kept: list[tuple[Array, Array]]) -> Array:
-    """Return the inverse Hessian, as the last steps tell it, times the gradient."""
+    """Return the inverse Hessian, estimated from the last steps, times the gradient."""
     q, shares = slope.copy(), []
     for step, change in reversed(kept):
         share = (step @ q) / (step @ change)

@@ -1,18 +1,23 @@
-"""What a search leaves on disk, so that it can go on: its steps, written whole each time."""
+"""What a search leaves on disk, so that it can go on: its steps and checks, written as one file."""
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
-from simulearn.grid import Grid
+from simulearn.grid import Grid, grid_from_dict, grid_to_dict
+from simulearn.inverse.checking import Check
 from simulearn.inverse.task import Task, task_to_dict
 
 SCHEMA = "simulearn.search/1"
 COLUMNS = ("iteration", "phase", "seconds", "designs", "error_mm", "words")
+FIGURES = ("error_mm", "error_fea_mm", "why", "apart_mm", "bound_mm", "phase")  # of a check
 
 
 @dataclass(frozen=True)
@@ -47,6 +52,19 @@ class Step:
         return {name: getattr(self, name) for name in COLUMNS}
 
 
+@dataclass(frozen=True, eq=False)
+class Past:
+    """What earlier runs of a search did.
+
+    Attributes:
+        steps: in their order.
+        checks: by finite elements, in their order.
+    """
+
+    steps: tuple[Step, ...] = ()
+    checks: tuple[Check, ...] = ()
+
+
 def identity(task: Task, model: str | None) -> str:
     """Return what names a search: all of the task but its limits, and the model."""
     data = task_to_dict(task)
@@ -55,8 +73,8 @@ def identity(task: Task, model: str | None) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def read_steps(folder: Path, name: str) -> list[Step]:
-    """Return the steps of an earlier run in a folder, none if there was none.
+def read_past(folder: Path, name: str) -> Past:
+    """Return what earlier runs in a folder did, nothing if there was none.
 
     Args:
         folder: of the search.
@@ -67,22 +85,30 @@ def read_steps(folder: Path, name: str) -> list[Step]:
     """
     path = folder / "search.json"
     if not path.exists():
-        return []
+        return Past()
     try:
         data = json.loads(read_text(path))
         if data["schema"] != SCHEMA or not isinstance(data["steps"], list):
             raise ValueError("another schema")
-        steps = [Step(**step) for step in data["steps"]]
+        steps = tuple(Step(**step) for step in data["steps"])
+        checks = tuple(_check(row) for row in data.get("checks", []))
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(f"{path}: is damaged ({error}); name another folder") from error
     if data["identity"] != name:
         raise InputError(f"{path}: is the search of another task; name another folder")
-    return steps
+    return Past(steps, checks)
 
 
-def write_steps(folder: Path, name: str, steps: list[Step]) -> None:
-    """Write the steps of a search, for going on (search.json) and for people (history.csv)."""
-    data = {"schema": SCHEMA, "identity": name, "steps": [asdict(step) for step in steps]}
+def write_past(
+    folder: Path, name: str, steps: Sequence[Step], checks: Sequence[Check] = ()
+) -> None:
+    """Write what a search did, for going on (search.json) and for people (history.csv)."""
+    data = {
+        "schema": SCHEMA,
+        "identity": name,
+        "steps": [asdict(step) for step in steps],
+        "checks": [_row(check) for check in checks],
+    }
     with replacing(folder / "search.json") as temporary:
         temporary.write_text(json.dumps(data) + "\n", encoding="utf-8")
     lines = [",".join(COLUMNS)]
@@ -93,3 +119,20 @@ def write_steps(folder: Path, name: str, steps: list[Step]) -> None:
         )
     with replacing(folder / "history.csv") as temporary:
         temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _row(check: Check) -> dict[str, Any]:
+    return {
+        "grid": grid_to_dict(check.grid),
+        **{name: getattr(check, name) for name in FIGURES},
+        "shift": None if check.shift is None else check.shift.tolist(),
+    }
+
+
+def _check(row: dict[str, Any]) -> Check:
+    shift = row["shift"]
+    return Check(
+        grid=grid_from_dict(row["grid"], paths=True),
+        **{name: row[name] for name in FIGURES},
+        shift=None if shift is None else np.array(shift, dtype=float),
+    )

@@ -1,11 +1,11 @@
-"""Gauss-Newton with whole steps for the actuators: the default.
+"""Gauss-Newton with discrete steps for the actuators: the default.
 
-Single modifications tell how the vertices move with each joint and with each step of an actuator,
+Single modifications show how the vertices move with each joint and with each step of an actuator,
 which makes a linear model of the grid. For any set of actuator steps the joints' best answer to it
 is a damped least-squares problem with a closed form, so that thousands of sets are compared for the
 price of a matrix product: a beam search adds one step after another to the most promising sets. The
 best few, with three dampings, are simulated, and the best of those is where the next iteration
-begins. Actuators are whole steps all along: nothing is relaxed, nothing has to be snapped.
+begins. Actuators are multiples of the step all along: nothing is relaxed or snapped.
 """
 
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from itertools import count
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.inverse.problem import Did, Found, Problem, residual
+from simulearn.inverse.problem import Advance, Problem, Scored, residual
 from simulearn.inverse.relaxing import relaxed, rounded
 from simulearn.inverse.space import Space
 
@@ -44,18 +44,18 @@ class Slope:
     steps: Array
 
 
-def newton(problem: Problem, start: Found) -> Iterator[Did]:
-    """Search from a design; yield what each iteration did."""
+def newton(problem: Problem, start: Scored) -> Iterator[Advance]:
+    """Search from a design; yield what each iteration advance."""
     x, a, begin = start.x, start.a, start
     for k in count():
         if problem.model is not None:
             last = None
             for last in relaxed(problem, x, a):
-                yield Did(f"actuators relaxed, {last[0].error:.2f} mm", whole=False)
-            found = rounded(problem, *last) if last else None
-            if found is not None:
-                begin = found
-                yield Did(f"actuators in whole steps, {begin.error:.2f} mm")
+                yield Advance(f"actuators relaxed, {last[0].error:.2f} mm", complete=False)
+            snapped = rounded(problem, *last) if last else None
+            if snapped is not None:
+                begin = snapped
+                yield Advance(f"actuators in steps, {begin.error:.2f} mm")
             elif k:
                 begin = problem.best or start
         yield from descent(problem, begin)
@@ -69,49 +69,50 @@ def newton(problem: Problem, start: Found) -> Iterator[Did]:
             begin = _nearby(problem, x, problem.space.nearest(x, a))
 
 
-def descent(problem: Problem, start: Found) -> Iterator[Did]:
-    """Go down from a design until little is gained; yield what each iteration did."""
+def descent(problem: Problem, start: Scored) -> Iterator[Advance]:
+    """Go down from a design until little is gained; yield what each iteration advance."""
     now, damping, idle = start, 1.0, 0
     while idle < PATIENCE:
         slope = probed(problem, now)
         x, a, rate = proposals(problem, now, slope, damping)
-        told = problem.points(x, a)
-        errors = problem.error(told)
+        points = problem.points(x, a)
+        errors = problem.error(points)
         k = int(errors.argmin())
         idle = 0 if errors[k] < (1 - GAIN) * now.error else idle + 1
         if errors[k] < now.error:
             stepped = round(np.abs(a[k] - now.a).sum() / problem.space.ratio)
             moved = float(np.abs(x[k] - now.x).max(initial=0.0))
-            now = Found(x[k], a[k], told[k], float(errors[k]))
+            now = Scored(x[k], a[k], points[k], float(errors[k]))
             damping = max(LEAST, damping * rate[k])
-            yield Did(f"{stepped} steps of actuators, joints by up to {moved:.1f} mm")
+            yield Advance(f"{stepped} steps of actuators, joints by up to {moved:.1f} mm")
         else:
             damping *= 30
-            yield Did("nothing better nearby")
+            yield Advance("nothing better nearby")
 
 
-def _nearby(problem: Problem, x: Array, a: Array) -> Found:
+def _nearby(problem: Problem, x: Array, a: Array) -> Scored:
     """Return a design to begin again from, or the best there is if that has no answer."""
-    found = problem.found(x, a)
-    if np.isfinite(found.error):
-        return found
+    nearby = problem.scored(x, a)
+    if np.isfinite(nearby.error):
+        return nearby
     assert problem.best is not None
     return problem.best
 
 
-def probed(problem: Problem, now: Found) -> Slope:
+def probed(problem: Problem, now: Scored) -> Slope:
     """Return the slopes at a design, from one batch of single modifications."""
     space = problem.space
     p, q = len(now.x), len(now.a)
     dx = np.concatenate([PROBE * np.eye(p), np.zeros((2 * q, p))])
     da = np.concatenate([np.zeros((p, q)), np.kron(np.eye(q), [[space.ratio], [-space.ratio]])])
-    told = residual(problem, problem.points(now.x + dx, now.a + da)) - residual(problem, now.points)
-    joints = np.nan_to_num(told[:p].T / PROBE)
-    return Slope(joints, told[p:].reshape(q, 2, told.shape[1]))
+    then = residual(problem, problem.points(now.x + dx, now.a + da))
+    moved = then - residual(problem, now.points)
+    joints = np.nan_to_num(moved[:p].T / PROBE)
+    return Slope(joints, moved[p:].reshape(q, 2, moved.shape[1]))
 
 
 def proposals(
-    problem: Problem, now: Found, slope: Slope, damping: float
+    problem: Problem, now: Scored, slope: Slope, damping: float
 ) -> tuple[Array, Array, Array]:
     """Return designs (T, P), (T, Q) that the model promises much of, and their dampings (T,)."""
     space, J = problem.space, slope.joints

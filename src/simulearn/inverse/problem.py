@@ -1,4 +1,4 @@
-"""What a method of search is given: points of a space go in, errors come out.
+"""What a method of search works on: points of a space go in, errors come out.
 
 The best design is remembered here, whatever the method does with the errors, so a search can be
 stopped at any moment and nothing is lost. No design that is not valid is ever scored.
@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.errors import Cancel, stop_if
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.scoring import Places
@@ -25,20 +26,20 @@ class OutOfTime(Exception):  # noqa: N818  (no error: the best so far is kept)
 
 
 @dataclass(frozen=True)
-class Did:
-    """What a method tells when it has got somewhere.
+class Advance:
+    """What a method has just done.
 
     Attributes:
-        words: what it did.
-        whole: whether that was an iteration, or only a part of one.
+        words: for people.
+        complete: whether that was an iteration, or only a part of one.
     """
 
     words: str
-    whole: bool = True
+    complete: bool = True
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class Scored:
     """A design that was scored.
 
     Attributes:
@@ -61,9 +62,10 @@ class Problem:
         space: what may change.
         goals: what is wanted.
         places: where vertices come to; see `scoring`.
-        model: the learned simulator that tells it, for those who differentiate it.
+        model: the learned simulator behind `places`, for methods that differentiate it.
         source: of what is drawn at random.
         until: when to stop, by `now`.
+        cancel: stops the search.
         best: so far.
         designs: how many were scored.
     """
@@ -75,7 +77,8 @@ class Problem:
     source: np.random.Generator = field(default_factory=lambda: drawing(0))
     until: float = np.inf
     now: Callable[[], float] = monotonic
-    best: Found | None = None
+    cancel: Cancel | None = None
+    best: Scored | None = None
     designs: int = field(default=0)
 
     def points(self, x: Array, a: Array) -> Array:
@@ -87,32 +90,32 @@ class Problem:
             OutOfTime: before anything is computed.
         """
         self.going()
-        told = np.full((len(x), len(self.goals), 3), np.nan)
+        points = np.full((len(x), len(self.goals), 3), np.nan)
         valid = np.flatnonzero(self.space.valid(x, a))
         if len(valid):
-            told[valid] = self.places(self.space.designs(x[valid], a[valid]))
+            points[valid] = self.places(self.space.designs(x[valid], a[valid]))
         self.designs += len(valid)
-        errors = self.error(told)
+        errors = self.error(points)
         k = int(errors.argmin()) if len(errors) else 0
         if len(errors) and errors[k] < (np.inf if self.best is None else self.best.error):
-            self.best = Found(x[k].copy(), a[k].copy(), told[k], float(errors[k]))
-        return told
+            self.best = Scored(x[k].copy(), a[k].copy(), points[k], float(errors[k]))
+        return points
 
     def loose(self, x: Array, a: Array) -> Array:
-        """Return where vertices come to when ratios are no whole steps: (T, G, 3) mm.
+        """Return where vertices come to when ratios are not multiples of the step: (T, G, 3) mm.
 
-        What is asked is no design, and not remembered; only learned engines answer.
+        Such points are no designs, and not remembered; only learned engines answer.
 
         Raises:
             OutOfTime: before anything is computed.
         """
         self.going()
-        told = np.full((len(x), len(self.goals), 3), np.nan)
-        sound = np.flatnonzero([self.space.net(one) is not None for one in x])
+        points = np.full((len(x), len(self.goals), 3), np.nan)
+        sound = np.flatnonzero(np.isfinite(self.space.nets(x)).all(axis=1))
         if len(sound):
-            told[sound] = self.places(self.space.designs(x[sound], a[sound]))
+            points[sound] = self.places(self.space.designs(x[sound], a[sound]))
         self.designs += len(sound)
-        return told
+        return points
 
     def error(self, points: Array) -> Array:
         """Return the errors (T,) mm of points (T, G, 3); infinite where there are none."""
@@ -122,17 +125,18 @@ class Problem:
         """Return the errors (T,) mm of points (T, P), (T, Q); see `points`."""
         return self.error(self.points(x, a))
 
-    def found(self, x: Array, a: Array) -> Found:
+    def scored(self, x: Array, a: Array) -> Scored:
         """Return a single point (P,), (Q,) with what it comes to."""
-        told = self.points(x[None], a[None])
-        return Found(x, a, told[0], float(self.error(told)[0]))
+        points = self.points(x[None], a[None])
+        return Scored(x, a, points[0], float(self.error(points)[0]))
 
-    def grid(self, found: Found) -> Grid:
+    def grid(self, design: Scored) -> Grid:
         """Return the grid of a design."""
-        return self.space.grid_at(found.x, found.a)
+        return self.space.grid_at(design.x, design.a)
 
     def going(self) -> None:
-        """Raise OutOfTime when it is."""
+        """Raise OutOfTime or CancelledError when the search is to stop."""
+        stop_if(self.cancel)
         if self.now() > self.until:
             raise OutOfTime
 

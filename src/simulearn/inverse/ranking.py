@@ -1,7 +1,7 @@
 """Ranking, for a designer who chooses: every single modification scored in one call.
 
 The five best that are shown differ really: no two change the same joint or beam, and no two move
-the goals' vertices in nearly the same way.
+the goals' vertices nearly alike.
 """
 
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import ComputationError
+from simulearn.errors import Cancel, ComputationError
 from simulearn.grid import Grid
 from simulearn.inverse.changes import Change, changes
 from simulearn.inverse.goals import Goals
@@ -19,6 +19,7 @@ from simulearn.inverse.scoring import places
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Free, Task
 from simulearn.simulate import Simulator
+from simulearn.simulate import engine as engine_of
 
 Array = NDArray[np.float64]
 
@@ -64,58 +65,81 @@ class Ranking:
     best: tuple[Suggestion, ...]
 
 
-def rank(task: Task, engine: Simulator) -> Ranking:
-    """Return the modifications of a task's grid, ranked by the error that they lead to.
+def rank(
+    design: Task | Grid,
+    engine: Simulator | str | None = None,
+    model: str | None = None,
+    free: Free | None = None,
+    cancel: Cancel | None = None,
+) -> Ranking:
+    """Return the modifications of a design, the best first.
+
+    Of a task's grid the best come closest to the goals. Of a grid without goals they are the ones
+    that change its shape most: its goals are the joints where they are, so that an error is how
+    far they are moved.
+
+    Args:
+        design: a task, or a grid.
+        engine: the simulator, or the name of one; the task's if not given, or `learned`.
+        model: for the engine `learned`; its default if not given.
+        free: what of a grid may change; a task says so itself.
+        cancel: stops the ranking between designs.
 
     Raises:
         InputError: the grid is not valid, or nothing may change.
         ComputationError: the engine has no answer for the grid itself.
+        CancelledError: the token was set.
     """
-    return ranked(task.start, task.aims, task.free, engine)
+    simulator = engine or (design.engine if isinstance(design, Task) else "learned")
+    if isinstance(simulator, str):
+        simulator = engine_of(simulator, model)
+    if isinstance(design, Task):
+        return _ranked(design.start, design.aims, design.free, simulator, cancel)
+    return _ranked(design, None, free or Free(), simulator, cancel)
 
 
-def explore(grid: Grid, engine: Simulator, free: Free = Free()) -> Ranking:  # noqa: B008
-    """Return the modifications of a grid without goals: the ones that change its shape most first.
-
-    The goals are the joints where they are, so that an error is how far they are moved.
-
-    Raises:
-        InputError: the grid is not valid, or nothing may change.
-    """
-    (result,) = engine.simulate([grid])
-    told = ranked(grid, Goals.centres(result.centres[-1]), free, engine)
-    most = told.suggestions[::-1]
-    return Ranking(told.grid, told.error_mm, told.points, most, different(most, told.points))
-
-
-def ranked(grid: Grid, goals: Goals, free: Free, engine: Simulator) -> Ranking:
-    """Return the modifications of a grid, ranked by the error of its goals."""
+def _ranked(
+    grid: Grid, goals: Goals | None, free: Free, engine: Simulator, cancel: Cancel | None
+) -> Ranking:
     space = Space.of(grid, free, getattr(engine, "training", None))
-    problem = Problem(space, goals, places(engine, goals))
+    moving = Goals.centres(np.zeros((len(grid.joints), 3)))
+    placed = places(engine, goals or moving, cancel)
+    problem = Problem(space, goals or moving, placed, cancel=cancel)
     x, a = space.start
     tried = changes(space, a)
-    told = problem.points(
-        x + np.array([np.zeros_like(x), *(change.dx for change in tried)]),
-        a + np.array([np.zeros_like(a), *(change.da for change in tried)]),
-    )
-    errors = problem.error(told)
-    if not np.isfinite(errors[0]):
-        raise ComputationError("the engine has no answer for the grid; ask --engine fea")
-    moved = np.linalg.norm(told - told[0], axis=-1).mean(axis=-1)
-    order = [int(k) for k in np.argsort(errors[1:], kind="stable") + 1 if np.isfinite(errors[k])]
+    xs = x + np.array([np.zeros_like(x), *(change.dx for change in tried)])
+    ratios = a + np.array([np.zeros_like(a), *(change.da for change in tried)])
+    points = problem.points(xs, ratios)
+    if not np.isfinite(points[0]).all():
+        raise ComputationError(
+            f"the engine {engine.name} has no answer for the grid",
+            "no-answer",
+            "grid",
+            "finite elements may have one",
+        )
+    moved = np.linalg.norm(points - points[0], axis=-1).mean(axis=-1)
+    errors = problem.error(points) if goals else np.nan_to_num(moved, nan=np.inf)
+    order = np.argsort(errors[1:] if goals else -moved[1:], kind="stable") + 1
+    designs = space.designs(xs, ratios)
     suggestions = tuple(
         Suggestion(
             change=tried[k - 1],
-            grid=space.grid_at(x + tried[k - 1].dx, a + tried[k - 1].da),
+            grid=Grid(
+                designs.flat[k],
+                designs.beams,
+                designs.actuators[k],
+                designs.fixed,
+                space.grid.material,
+            ),
             error_mm=float(errors[k]),
-            points=told[k],
+            points=points[k],
             moved_mm=float(moved[k]),
         )
-        for k in order
+        for k in order.tolist()
+        if np.isfinite(errors[k])
     )
-    return Ranking(
-        space.grid, float(errors[0]), told[0], suggestions, different(suggestions, told[0])
-    )
+    best = different(suggestions, points[0])
+    return Ranking(space.grid, float(errors[0]), points[0], suggestions, best)
 
 
 def different(

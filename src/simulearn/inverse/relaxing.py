@@ -1,11 +1,11 @@
-"""Relaxation: actuators of any length for a while, then the whole steps nearest in effect.
+"""Relaxation: actuators of any length for a while, then the steps nearest in effect.
 
 With ratios as free as the joints, Gauss-Newton with damping comes close to most targets within a
 few iterations. Rounding each ratio to the nearest step would throw that away; instead steps are
 assigned to one actuator after another by a beam search, where joints and the actuators not yet
 assigned answer as the linear model says they can (the closest-vector problem of lattices).
 
-What is relaxed is no design, so engines that insist on designs cannot be asked; learned ones can.
+Relaxed points are no designs, so only learned engines can simulate them.
 """
 
 from collections.abc import Iterator
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.inverse.problem import Found, Problem, residual
+from simulearn.inverse.problem import Problem, Scored, residual
 
 Array = NDArray[np.float64]
 
-UNIT = 20.0  # mm that count as much as a whole ratio
+UNIT = 20.0  # mm that count as much as a ratio of 1
 PROBE = 1.0  # mm
 DAMPINGS = (0.03, 0.3, 3.0, 30.0)  # times the present one
 ITERATIONS, GAIN = 10, 0.1  # at most; less gained in one is little
@@ -49,24 +49,27 @@ def relaxed(problem: Problem, x: Array, a: Array) -> Iterator[tuple[Loose, Array
     """
     p, damping = len(x), 1.0
     most = np.r_[np.full(p, np.inf), np.full(len(a), UNIT)]
-    ask = lambda z: problem.loose(z[:, :p], z[:, p:] / UNIT)  # noqa: E731
+
+    def places(z: Array) -> Array:
+        return problem.loose(z[:, :p], z[:, p:] / UNIT)
+
     z = np.r_[x, UNIT * a]
-    told = ask(z[None])
-    now = Loose(z, told[0], float(problem.error(told)[0]))
+    points = places(z[None])
+    now = Loose(z, points[0], float(problem.error(points)[0]))
     if not np.isfinite(now.error):
         return
     for _ in range(ITERATIONS):
         # Inwards where a ratio is at its limit.
         side = np.where(now.z + PROBE > most, -PROBE, PROBE)
-        told = ask(now.z + np.diag(side))
-        J = np.nan_to_num((residual(problem, told) - residual(problem, now.points)).T / side)
+        points = places(now.z + np.diag(side))
+        J = np.nan_to_num((residual(problem, points) - residual(problem, now.points)).T / side)
         yield now, J
         r, n = residual(problem, now.points), len(now.z)
         rates = damping * np.array(DAMPINGS)
         steps = [np.linalg.solve(J.T @ J + rate * np.eye(n) / len(r), -J.T @ r) for rate in rates]
         z = np.clip(now.z + np.array(steps), -most, most)
-        told = ask(z)
-        errors = problem.error(told)
+        points = places(z)
+        errors = problem.error(points)
         k = int(errors.argmin())
         if not errors[k] < now.error:
             damping *= 100
@@ -75,13 +78,13 @@ def relaxed(problem: Problem, x: Array, a: Array) -> Iterator[tuple[Loose, Array
             continue
         little = errors[k] > (1 - GAIN) * now.error
         damping = max(1e-4, damping * DAMPINGS[k])
-        now = Loose(z[k], told[k], float(errors[k]))
+        now = Loose(z[k], points[k], float(errors[k]))
         if little or now.error < ENOUGH:
             yield now, J
             return
 
 
-def rounded(problem: Problem, loose: Loose, J: Array) -> Found | None:
+def rounded(problem: Problem, loose: Loose, J: Array) -> Scored | None:
     """Return the best of the designs that relaxed ratios may round to; None if none is valid."""
     space = problem.space
     p = len(space.motions)
@@ -109,7 +112,7 @@ def rounded(problem: Problem, loose: Loose, J: Array) -> Found | None:
     answer = np.linalg.solve(free.T @ free + soft[:p, :p], free.T @ moved.T).T
     xs = np.concatenate([x - answer, np.repeat(x[None], len(sets), axis=0)])
     steps = np.concatenate([sets, sets])
-    told = problem.points(xs, steps)
-    errors = problem.error(told)
+    points = problem.points(xs, steps)
+    errors = problem.error(points)
     k = int(errors.argmin())
-    return Found(xs[k], steps[k], told[k], float(errors[k])) if np.isfinite(errors[k]) else None
+    return Scored(xs[k], steps[k], points[k], float(errors[k])) if np.isfinite(errors[k]) else None

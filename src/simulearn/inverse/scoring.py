@@ -5,62 +5,60 @@ design that an engine has no answer for has no place, and a search does without 
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import ComputationError, InputError
+from simulearn.errors import Cancel
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.learn.common.model import Designs, last_frame
-from simulearn.simulate import Simulator
+from simulearn.simulate import Failure, Simulator
 from simulearn.simulate.learned import Learned
 
 Array = NDArray[np.float64]
 Places = Callable[[Designs], Array]  # designs -> (T, G, 3), NaN where there is no answer
-Going = Callable[[], None]  # called between slow simulations; raises to stop them
 
 
-def places(engine: Simulator, goals: Goals, going: Going = lambda: None) -> Places:
-    """Return the function that tells where the vertices of goals are in the last frame.
+def places(engine: Simulator, goals: Goals, cancel: Cancel | None = None) -> Places:
+    """Return the function that gives the places of the goals' vertices in the last frame.
 
     Args:
-        engine: who answers.
+        engine: the simulator.
         goals: whose vertices.
-        going: called before each single simulation.
+        cancel: stops the simulation of a batch; the function raises CancelledError.
     """
     if isinstance(engine, Learned):
         return _together(engine, goals)
-    return _one_by_one(engine, goals, going)
+    return _one_by_one(engine, goals, cancel)
 
 
 def _together(engine: Learned, goals: Goals) -> Places:
     card, model = engine.bundle.card, engine.bundle.model
 
     def together(designs: Designs) -> Array:
-        if designs.material != card.material:
-            raise InputError(
-                f'material is {designs.material}; the model "{card.name}" has learnt '
-                f"{card.material}"
-            )
-        told = last_frame(model, designs)
-        points = goals.points(told.joints, told.sections)
-        answered = told.converged & np.isfinite(points).all(axis=(1, 2))
+        engine.require(designs.material)
+        last = last_frame(model, replace(designs, material=card.material))
+        points = goals.points(last.joints, last.sections)
+        answered = last.converged & np.isfinite(points).all(axis=(1, 2))
         return np.where(answered[:, None, None], points, np.nan)
 
     return together
 
 
-def _one_by_one(engine: Simulator, goals: Goals, going: Going) -> Places:
-    def one(grid: Grid) -> Array:
-        going()
-        try:
-            (result,) = engine.simulate([grid])
-        except ComputationError:
-            return np.full((len(goals), 3), np.nan)
-        return goals.points(result.joints[-1], result.beams[-1])
+def _one_by_one(engine: Simulator, goals: Goals, cancel: Cancel | None) -> Places:
+    def one_by_one(designs: Designs) -> Array:
+        outcomes = engine.simulate(grids(designs), cancel=cancel)
+        points = np.full((len(designs), len(goals), 3), np.nan)
+        for t, outcome in enumerate(outcomes):
+            if not isinstance(outcome, Failure):
+                points[t] = goals.points(outcome.joints[-1], outcome.beams[-1])
+            elif outcome.invalid:
+                raise outcome.error
+        return points
 
-    return lambda designs: np.array([one(grid) for grid in grids(designs)])
+    return one_by_one
 
 
 def grids(designs: Designs) -> list[Grid]:

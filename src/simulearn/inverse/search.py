@@ -1,27 +1,31 @@
 """One call for every method: search within limits, check by finite elements, correct, go on.
 
-The clock begins once the engine's kernels are compiled. A search uses part of its time; then its
-best design is checked by finite elements. Where they differ, the targets are moved by the
-difference and the search goes on from there, as often as the limits allow.
+One time limit covers searching and checking; it begins once the engine is ready. A search uses part
+of its time; then its best design is checked by finite elements. Where they differ, the targets are
+moved by the difference and the search goes on from there, as often as the limits allow. A search
+that found a design returns it, whatever a check, an interrupt or a token does afterwards.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from time import monotonic
 
 import numpy as np
 
-from simulearn.errors import ComputationError, InputError
+from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.keeping import Step
-from simulearn.inverse.problem import Did, Found, OutOfTime, Problem, drawing
+from simulearn.inverse.keeping import Past, Step
+from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, drawing
+from simulearn.inverse.reach import out_of_reach
 from simulearn.inverse.scoring import places
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Task
-from simulearn.simulate import Simulator, engine
+from simulearn.simulate import Simulator
+from simulearn.simulate import engine as engine_of
+from simulearn.simulate.calls import warm
 from simulearn.simulate.learned import Learned
 
 METHODS = {  # name -> module, function
@@ -30,33 +34,39 @@ METHODS = {  # name -> module, function
     "gradient": ("simulearn.inverse.gradient", "gradient"),
     "cma": ("simulearn.inverse.cma_es", "cma_es"),
 }
-Method = Callable[[Problem, Found], Iterator[Did]]
-Tell = Callable[[Step], None]
+Method = Callable[[Problem, Scored], Iterator[Advance]]
+Progress = Callable[[Step], None]  # called with each step, as soon as it is done
 
 GOOD = 0.1  # mm, about the engine's own error; a search that came so far has done its work
 SEARCHING = 0.75  # of the time left goes into a search that corrections may follow
 WORTH = 0.1  # of the error, that a correction must promise
+GRACE = 10.0  # s beyond the deadline that the first check of a search may take
+CHECKING = 0.25  # s for each beam that a check takes, until one has been measured
 
 
 @dataclass(frozen=True, eq=False)
-class Outcome:
-    """What a search found.
+class SearchResult:
+    """The result of a search.
 
     Attributes:
-        check: the best design, by the engine and by finite elements; None if it was interrupted.
+        check: the best design, by the engine and by finite elements; None if no check was made.
         grid: the best design.
         error_mm: of it, by the engine that was used.
         steps: the iterations, 0 being the beginning.
+        checks: by finite elements, those of earlier runs among them.
         seconds: of searching and checking.
         interrupted: whether it was stopped by the user.
+        warnings: about the goals.
     """
 
     check: Check | None
     grid: Grid
     error_mm: float
     steps: tuple[Step, ...]
+    checks: tuple[Check, ...]
     seconds: float
     interrupted: bool
+    warnings: tuple[Message, ...] = ()
 
     @property
     def designs(self) -> int:
@@ -76,145 +86,196 @@ def method(name: str) -> Method:
         InputError: there is none.
     """
     if name not in METHODS:
-        raise InputError(f'method "{name}" is not known; known are {", ".join(METHODS)}')
+        known = ", ".join(METHODS)
+        raise InputError(
+            f'method "{name}" is not known; known are {known}', "method-unknown", "method"
+        )
     module, function = METHODS[name]
-    found: Method = getattr(import_module(module), function)
-    return found
+    search: Method = getattr(import_module(module), function)
+    return search
 
 
 def optimize(
     task: Task,
+    engine: Simulator | str | None = None,
     model: str | None = None,
-    tell: Tell = lambda step: None,
-    before: tuple[Step, ...] = (),
-) -> Outcome:
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    before: Past | None = None,
+) -> SearchResult:
     """Search for a design whose vertices come to their targets.
 
-    An interrupt (Ctrl-C) ends the search and keeps the best so far.
+    An interrupt (Ctrl-C) or the token ends the search and keeps the best so far.
 
     Args:
         task: what is wanted.
+        engine: the simulator, or the name of one; the task's if not given.
         model: for the engine `learned`; its default if not given.
-        tell: called after each iteration.
-        before: the steps of an earlier run, from which to go on.
+        progress: called after each iteration with the step that was done, the best design in it.
+        cancel: stops the search within an iteration.
+        before: an earlier run, from which to go on.
 
     Raises:
         InputError: the grid is not valid, nothing may change, method or engine is not known.
         ComputationError: the engine has no answer for the design to begin with.
     """
-    search = Search(task, engine(task.engine, model), method(task.method), tell, list(before))
-    return search.run()
+    simulator = engine or task.engine
+    if isinstance(simulator, str):
+        simulator = engine_of(simulator, model)
+    return Search(task, simulator, progress, cancel, before or Past()).run()
 
 
-@dataclass(eq=False)
 class Search:
-    """A search under way.
+    """A search that is running.
 
-    Attributes:
+    Args:
         task: what is wanted.
-        engine: who answers.
-        method: how to search.
-        tell: called after each iteration.
-        steps: so far.
+        engine: the simulator.
+        progress: called after each iteration.
+        cancel: stops the search.
+        before: an earlier run.
     """
 
-    task: Task
-    engine: Simulator
-    method: Method
-    tell: Tell
-    steps: list[Step]
-    best: Check | None = field(default=None)
-    _begun: float = field(default=0.0)
-    _checking: float = field(default=3.0)  # s that a check takes, until one tells
+    def __init__(
+        self,
+        task: Task,
+        engine: Simulator,
+        progress: Progress | None,
+        cancel: Cancel | None,
+        before: Past,
+    ) -> None:
+        self.task, self.engine, self.cancel = task, engine, cancel
+        self.method = method(task.method)
+        self.steps, self.checks = list(before.steps), list(before.checks)
+        self._progress = progress
+        self._begun = np.inf
+        self._checking = CHECKING * len(task.grid["beams"])
 
-    def run(self) -> Outcome:
+    def run(self) -> SearchResult:
         """Search, check and correct within the limits."""
-        goals = self.task.aims
-        space = Space.of(self.task.start, self.task.free, getattr(self.engine, "training", None))
+        goals, start = self.task.aims, self.task.start
+        warnings = out_of_reach(start, goals)
+        space = Space.of(start, self.task.free, getattr(self.engine, "training", None))
         now = self._started(space, goals)
-        phase, shift, interrupted = 0, np.zeros_like(goals.targets), False
+        interrupted = False
         try:
+            phase, shift = self._resumed(goals)
             while True:
                 now = self._searched(space, goals.shifted(shift), now, phase)
-                begun = monotonic()
-                found = check(space.grid_at(now.x, now.a), goals, self.engine)
-                self._checking = monotonic() - begun
-                if found.better_than(self.best):
-                    self.best = found
-                if not self._worth_going_on(found, phase):
+                latest = self._checked(space.grid_at(now.x, now.a), now, goals, phase)
+                if latest.shift is None or not self._worth_going_on(latest, phase):
                     break
-                assert found.shift is not None
-                phase, shift = phase + 1, found.shift
-        except KeyboardInterrupt:
+                phase, shift = phase + 1, latest.shift
+        except (KeyboardInterrupt, CancelledError):
             interrupted = True
-        if self.best is not None:
-            grid, error = self.best.grid, self.best.error_mm
+        best: Check | None = None
+        for one in self.checks:
+            best = one if one.better_than(best) else best
+        if best is not None and (not interrupted or best.error_fea_mm is not None):
+            grid, error = best.grid, best.error_mm
         else:
-            grid, error = self.steps[-1].grid(space.grid), self.steps[-1].error_mm
-        return Outcome(self.best, grid, error, tuple(self.steps), self.seconds, interrupted)
+            best, grid, error = None, self.steps[-1].grid(space.grid), self.steps[-1].error_mm
+        return SearchResult(
+            best,
+            grid,
+            error,
+            tuple(self.steps),
+            tuple(self.checks),
+            self.seconds,
+            interrupted,
+            tuple(warnings),
+        )
 
     @property
     def seconds(self) -> float:
         """Of searching and checking, earlier runs included."""
-        return monotonic() - self._begun
+        return float(monotonic() - self._begun)
 
-    def _started(self, space: Space, goals: Goals) -> Found:
+    def _started(self, space: Space, goals: Goals) -> Scored:
         """Return the design to begin with, and start the clock."""
         problem = self._problem(space, goals, np.inf)
         before = self.steps[-1] if self.steps else None
         x, a = space.start if before is None else space.point(before.grid(space.grid))
-        found = problem.found(x, a)
-        if not np.isfinite(found.error):
+        start = problem.scored(x, a)
+        if not np.isfinite(start.error):
             raise ComputationError(
-                f"the engine {self.engine.name} has no answer for the design to begin with"
+                f"the engine {self.engine.name} has no answer for the design to begin with",
+                "no-answer",
+                "grid",
             )
-        if isinstance(self.engine, Learned):  # its kernels are compiled before the clock runs
-            next(self.method(self._problem(space, goals, np.inf), found), None)
+        # All kernels are compiled before the clock runs, those of the checks, too.
+        warm("fea")
+        if isinstance(self.engine, Learned):
+            next(self.method(self._problem(space, goals, np.inf), start), None)
         self._begun = monotonic() - (before.seconds if before else 0.0)
         if before is None:
-            self._note(space, found, 0, 1, 0, "the design to begin with")
-        return found
+            self._note(space, start, 0, 1, 0, "the design to begin with")
+        return start
+
+    def _resumed(self, goals: Goals) -> tuple[int, np.ndarray]:
+        """Return the phase to go on with, and by how much its targets are moved (G, 3) mm."""
+        phase = self.steps[-1].phase
+        for one in reversed(self.checks):
+            if one.phase == phase - 1 and one.shift is not None:
+                return phase, one.shift
+        return 0, np.zeros_like(goals.targets)
 
     def _problem(self, space: Space, goals: Goals, until: float) -> Problem:
         model = self.engine.bundle.model if isinstance(self.engine, Learned) else None
-        problem = Problem(
+        return Problem(
             space,
             goals,
-            lambda designs: told(designs),
+            places(self.engine, goals, _Until(self.cancel, until)),
             model=model,
             source=drawing(len(self.steps)),  # other numbers in each phase and after each stop
             until=until,
+            cancel=self.cancel,
         )
-        told = places(self.engine, goals, problem.going)
-        return problem
 
-    def _searched(self, space: Space, goals: Goals, start: Found, phase: int) -> Found:
+    def _searched(self, space: Space, goals: Goals, start: Scored, phase: int) -> Scored:
         """Return the best design of a phase, by the engine."""
         limits = self.task.limits
         left = limits.seconds - self.seconds
         share = SEARCHING if phase < limits.corrections else 1.0
-        problem = self._problem(space, goals, monotonic() + share * (left - self._checking))
+        room = min(self._checking, left / 2)
+        problem = self._problem(space, goals, monotonic() + share * (left - room))
         done = self.steps[-1].iteration
         most = done + max(1, round(share * (limits.iterations - done)))
         before = self.steps[-1].designs
         # Targets may have moved since it was scored.
         error = float(problem.error(start.points[None])[0])
-        start = problem.best = Found(start.x, start.a, start.points, error)
+        start = problem.best = Scored(start.x, start.a, start.points, error)
         try:
             if start.error > GOOD and done < limits.iterations:
-                for did in self.method(problem, start):
+                for advance in self.method(problem, start):
                     now = problem.best
-                    count = self.steps[-1].iteration + did.whole
-                    self._note(space, now, count, before + problem.designs, phase, did.words)
+                    count = self.steps[-1].iteration + advance.complete
+                    self._note(space, now, count, before + problem.designs, phase, advance.words)
                     if count >= most or now.error < GOOD:
                         break
                     problem.going()
         except OutOfTime:
             pass
+        except CancelledError:  # within a simulation; by the deadline, or by the user
+            if self.cancel is not None and self.cancel.is_set():
+                raise
         return problem.best
 
+    def _checked(self, grid: Grid, now: Scored, goals: Goals, phase: int) -> Check:
+        """Return the check of a design, perhaps one of an earlier run."""
+        for one in self.checks:
+            if one.error_fea_mm is not None and _same(one.grid, grid):
+                return one
+        begun = monotonic()
+        grace = 0.0 if self.checks else GRACE
+        until = _Until(self.cancel, self._begun + self.task.limits.seconds + grace)
+        latest = check(grid, now.points, goals, self.engine, self.cancel, until, phase)
+        self._checking = monotonic() - begun
+        self.checks.append(latest)
+        return latest
+
     def _note(
-        self, space: Space, now: Found, iteration: int, designs: int, phase: int, words: str
+        self, space: Space, now: Scored, iteration: int, designs: int, phase: int, words: str
     ) -> None:
         grid = space.grid_at(now.x, now.a)
         step = Step(
@@ -228,17 +289,36 @@ class Search:
             actuators=grid.actuators.tolist(),
         )
         self.steps.append(step)
-        self.tell(step)
+        if self._progress is not None:
+            self._progress(step)
 
-    def _worth_going_on(self, found: Check, phase: int) -> bool:
+    def _worth_going_on(self, latest: Check, phase: int) -> bool:
         """Whether to go on from targets that finite elements have corrected."""
         limits = self.task.limits
-        if found.error_fea_mm is None or found.apart_mm is None:
+        if latest.error_fea_mm is None or latest.apart_mm is None:
             return False
         return (
             phase < limits.corrections
             and self.steps[-1].iteration < limits.iterations
             and limits.seconds - self.seconds > 2 * self._checking
-            and found.error_fea_mm > GOOD
-            and found.apart_mm > WORTH * found.error_fea_mm
+            and latest.error_fea_mm > GOOD
+            and latest.apart_mm > WORTH * latest.error_fea_mm
         )
+
+
+@dataclass(frozen=True)
+class _Until:
+    """A token that is set when the time is over, or when another one is."""
+
+    cancel: Cancel | None
+    deadline: float
+
+    def is_set(self) -> bool:
+        return monotonic() > self.deadline or (self.cancel is not None and self.cancel.is_set())
+
+
+def _same(one: Grid, other: Grid) -> bool:
+    return bool(
+        np.allclose(one.joints, other.joints, rtol=0, atol=1e-9)
+        and np.array_equal(one.actuators, other.actuators)
+    )

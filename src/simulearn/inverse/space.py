@@ -6,13 +6,13 @@ of a pair. Symmetry is thus never lost, and methods of search see plain vectors.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
-from simulearn.grid import Grid, TrainingRange, validate
+from simulearn.grid import Checks, Grid, TrainingRange, check_designs, validate
 from simulearn.inverse.task import Free
 from simulearn.learn.common.model import Designs
 from simulearn.material import Material, load_material
@@ -22,6 +22,7 @@ Mask = NDArray[np.bool_]
 
 FLIPS = {"x": (-1.0, 1.0), "y": (1.0, -1.0), "xy": (-1.0, -1.0), "none": (1.0, 1.0)}
 CLOSE = 1e-9  # of ratios and lengths that are the same
+ROUNDING = 1e-6  # mm, of sizes at their limits, as in validation
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Space:
         groups: beams that have the same ratio.
         move: step of a joint, mm.
         ratio: step of a ratio.
-        training: what the engine has seen; designs beyond are not valid here, if the grid is not.
+        training: sizes that the engine has learnt; designs outside are not valid here.
     """
 
     grid: Grid
@@ -66,16 +67,19 @@ class Space:
         Args:
             grid: valid, without dangling beams.
             free: what may change.
-            training: what the engine has seen.
+            training: sizes that the engine has learnt; they confine the space unless the grid
+                itself is outside.
 
         Raises:
             InputError: the grid is not valid, or nothing may change.
         """
         grid = grid.centred
         material = load_material(grid.material)
-        report = validate(grid, material, training=training)
+        report = validate(grid, material)
         for error in report.errors:
-            raise InputError(f"the design to begin with: {error.message}")
+            raise InputError(
+                f"the design to begin with: {error.message}", error.code, error.where, report.errors
+            )
         motions, units = _motions(grid, free)
         own = free.actuators
         beams = range(len(grid.beams)) if own is None else sorted(set(own))
@@ -89,8 +93,8 @@ class Space:
                 )
         if not (units or groups):
             raise InputError("free lets nothing change; name joints or actuators")
-        if report.warnings:
-            training = None  # it is beyond what was seen anyhow
+        if training is not None and outside(grid.joints[None], grid, training)[0]:
+            training = None
         return cls(grid, motions, units, groups, free.move, free.ratio, training)
 
     @property
@@ -112,8 +116,7 @@ class Space:
         ratios = np.repeat(grid.actuators[None], len(a), axis=0)
         for q, group in enumerate(self.groups):
             ratios[:, group] = a[:, q, None]
-        material = load_material(grid.material)
-        return Designs(grid.beams, grid.fixed, flat, ratios, material, grid.material)
+        return Designs(grid.beams, grid.fixed, flat, ratios, self._material, grid.material)
 
     def grid_at(self, x: Array, a: Array) -> Grid:
         """Return the grid of a point (P,), (Q,)."""
@@ -122,14 +125,25 @@ class Space:
 
     def valid(self, x: Array, a: Array) -> Mask:
         """Return which of the points (T, P), (T, Q) are valid grids."""
-        return np.array([self._fits(*pair) for pair in zip(x, a, strict=True)], dtype=bool)
+        designs = self.designs(x, a)
+        checks = self._checks(designs.flat, designs.actuators)
+        valid: Mask = checks.valid & ~self._outside(designs.flat)
+        return valid
+
+    def nets(self, x: Array) -> Array:
+        """Return the net lengths (T, B) mm of the beams; NaN where the joints lie impossibly."""
+        flat = self.designs(x, np.zeros((len(x), len(self.groups)))).flat
+        checks = self._checks(flat, np.zeros((len(x), len(self.grid.beams))))
+        possible = checks.valid & ~self._outside(flat)
+        return np.where(possible[:, None], checks.net_lengths, np.nan)
 
     def net(self, x: Array) -> Array | None:
         """Return the net lengths (B,) mm of the beams, or None if the joints lie impossibly."""
-        return self._layout(np.ascontiguousarray(x).tobytes())
+        net = self.nets(x[None])[0]
+        return net if np.isfinite(net).all() else None
 
     def options(self, x: Array) -> list[Array]:
-        """Return the ratios that each actuator may have at joints x (P,): whole, long enough."""
+        """Return for each actuator the steps that are long enough at joints x (P,)."""
         count = int(1 / self.ratio + CLOSE)
         steps: Array = self.ratio * np.arange(-count, count + 1, dtype=float)
         net = self.net(x)
@@ -151,28 +165,35 @@ class Space:
     def _shortest(self) -> float:
         return self._material.limits.actuator_length
 
-    def _fits(self, x: Array, a: Array) -> bool:
-        if not (np.abs(a) <= 1 + CLOSE).all():
-            return False
-        net = self.net(x)
-        if net is None:
-            return False
-        ratios = np.abs(self.designs(x[None], a[None]).actuators[0])
-        return bool(((ratios == 0) | (ratios * net >= self._shortest - CLOSE)).all())
+    def _checks(self, joints: Array, actuators: Array) -> Checks:
+        grid = self.grid
+        return check_designs(grid.beams, grid.fixed, joints, actuators, self._material)
 
-    @cached_property
-    def _layout(self):  # type: ignore[no-untyped-def]
-        @lru_cache(maxsize=4096)
-        def layout(x: bytes) -> Array | None:
-            """Return the net lengths of a layout of joints without actuators, if it is valid."""
-            moved = self.grid_at(np.frombuffer(x), self.start[1])
-            bare = Grid(moved.joints, moved.beams, 0 * moved.actuators, moved.fixed, moved.material)
-            report = validate(bare, self._material, training=self.training)
-            if report.errors or (self.training is not None and report.warnings):
-                return None
-            return np.array([report.net_lengths[b] for b in range(len(bare.beams))])
+    def _outside(self, joints: Array) -> Mask:
+        """Return which layouts (T, J, 2) mm are beyond the sizes that confine the space."""
+        if self.training is None:
+            return np.zeros(len(joints), dtype=bool)
+        return outside(joints, self.grid, self.training)
 
-        return layout
+
+def outside(joints: Array, grid: Grid, training: TrainingRange) -> Mask:
+    """Return which layouts of joints (T, J, 2) mm are beyond the sizes that were learnt.
+
+    Args:
+        joints: of designs with the topology of a grid.
+        grid: whose beams and fixed joint count.
+        training: the sizes.
+    """
+    start, end = joints[:, grid.beams[:, 0]], joints[:, grid.beams[:, 1]]
+    lengths = np.linalg.norm(end - start, axis=-1)
+    size = np.linalg.norm(joints - joints[:, [grid.fixed]], axis=-1).max(axis=1)
+    mask: Mask = np.zeros(len(joints), dtype=bool)
+    for values, (least, most) in (
+        (lengths, training.beam_length),
+        (size[:, None], training.dimension),
+    ):
+        mask |= ((values < least - ROUNDING) | (values > most + ROUNDING)).any(axis=1)
+    return mask
 
 
 def _motions(grid: Grid, free: Free) -> tuple[Array, tuple[Unit, ...]]:

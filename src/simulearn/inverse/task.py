@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
+from simulearn.grid.arrays import shown
 from simulearn.grid.cleaning import removals
 from simulearn.inverse.goals import Goals, Vertex
 
@@ -77,7 +78,7 @@ class Limits(_Part):
 
     Attributes:
         iterations: of the method.
-        seconds: of searching and checking; what is begun is finished.
+        seconds: of searching and checking; only the first check may take up to ten more.
         corrections: how often to go on from targets corrected by FEA.
     """
 
@@ -144,9 +145,9 @@ KEYS = {
     "method": "a method is a name",
     "engine": "an engine is a name",
     "limits": "limits are an object with iterations, seconds and corrections",
-    "iterations": "iterations are a whole number of at least 1",
+    "iterations": "iterations are an integer of at least 1",
     "seconds": "seconds are a number more than 0",
-    "corrections": "corrections are a whole number of at least 0",
+    "corrections": "corrections are an integer of at least 0",
 }
 PLACES: dict[str, type[BaseModel]] = {
     "goals": Goal,
@@ -171,15 +172,19 @@ def read_task(path: Path | str, *, paths: bool = False) -> Task:
         return task_from_dict(json.loads(read_text(path)), paths=paths)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
-        raise InputError(f"{path}: is not valid JSON at {place}: {error.msg}") from error
-    except (InputError, RecursionError) as error:
+        raise InputError(
+            f"{path}: is not valid JSON at {place}: {error.msg}", "task", str(path)
+        ) from error
+    except RecursionError as error:
+        raise InputError(f"{path}: lists are nested too deeply", "task", str(path)) from error
+    except InputError as error:
         if isinstance(error.__cause__, OSError | UnicodeDecodeError):
             raise
-        raise InputError(f"{path}: {error}") from error
+        raise InputError(f"{path}: {error}", error.code, error.where) from error
 
 
 def write_task(task: Task, path: Path | str) -> None:
-    """Write a task to a file, whole or not at all.
+    """Write a task to a file, or leave the old one.
 
     Raises:
         InputError: the file cannot be written.
@@ -204,17 +209,22 @@ def task_from_dict(data: Any, *, paths: bool = False) -> Task:
         InputError: a key, type, index or number is wrong; one line says which.
     """
     if isinstance(data, dict) and "schema" not in data:
-        raise InputError(f"schema is missing; {KEYS['schema']}")
+        raise InputError(f"schema is missing; {KEYS['schema']}", "task", "schema")
     try:
         task = Task.model_validate(data)
     except ValidationError as error:
-        raise InputError(_line(error.errors(include_url=False)[0])) from error
+        first = error.errors(include_url=False)[0]
+        raise InputError(_line(first), "task", _place(first["loc"])) from error
     try:
         grid = grid_from_dict(task.grid, paths=paths)
     except InputError as error:
-        raise InputError(f"grid: {error}") from error
+        raise InputError(f"grid: {error}", error.code, error.where or "grid") from error
     for removed in removals(grid):
-        raise InputError(f"grid: {removed.message}; take it out of a grid that is searched from")
+        raise InputError(
+            f"grid: {removed.message}; take it out of a grid that is searched from",
+            removed.code,
+            removed.where,
+        )
     _check(task, grid)
     return task
 
@@ -224,14 +234,16 @@ def _check(task: Task, grid: Grid) -> None:
     for k, goal in enumerate(task.goals):
         _vertex(goal.vertex, f"goals[{k}].vertex", grid)
     if not sum(goal.weight for goal in task.goals) > 0:
-        raise InputError("goals all have the weight 0; at least one counts")
+        raise InputError("goals all have the weight 0; at least one counts", "task", "goals")
     joints, beams, free = len(grid.joints), len(grid.beams), task.free
     _indices(free.joints or [], joints, "free.joints", "joints")
     _indices(free.actuators or [], beams, "free.actuators", "beams")
     if free.joints is not None and grid.fixed in free.joints:
         place = free.joints.index(grid.fixed)
         raise InputError(
-            f"free.joints[{place}] is {grid.fixed}, the fixed joint; it is what all is seen from"
+            f"free.joints[{place}] is {grid.fixed}, the fixed joint, the origin of all targets",
+            "task",
+            f"free.joints[{place}]",
         )
     for name, pairs, count, allowed in (
         ("joints", free.pairs.joints, joints, free.joints),
@@ -242,15 +254,19 @@ def _check(task: Task, grid: Grid) -> None:
         _indices(flat, count, where, "joints" if name == "joints" else "beams")
         for k in flat:
             if flat.count(k) > 1:
-                raise InputError(f"{where} has {k} in two pairs; it has one partner")
+                raise InputError(f"{where} has {k} in two pairs; it has one partner", "task", where)
             if (allowed is not None and k not in allowed) or (name == "joints" and k == grid.fixed):
-                raise InputError(f"{where} has {k}, which is not free to change")
+                raise InputError(f"{where} has {k}, which is not free to change", "task", where)
 
 
 def _indices(indices: Sequence[int], count: int, where: str, what: str) -> None:
     for place, k in enumerate(indices):
         if k >= count:
-            raise InputError(f"{where}[{place}] is {k}; {what} are numbered 0 to {count - 1}")
+            raise InputError(
+                f"{where}[{place}] is {k}; {what} are numbered 0 to {count - 1}",
+                "task",
+                f"{where}[{place}]",
+            )
 
 
 def _vertex(words: list[Any], where: str, grid: Grid) -> Vertex:
@@ -264,7 +280,9 @@ def _vertex(words: list[Any], where: str, grid: Grid) -> Vertex:
         k = words[place]
         if isinstance(k, bool) or not isinstance(k, int) or not 0 <= k < count:
             raise InputError(
-                f"{where}[{place}] is {_shown(k)}; {what} are numbered 0 to {count - 1}"
+                f"{where}[{place}] is {shown(k)}; {what} are numbered 0 to {count - 1}",
+                "task",
+                f"{where}[{place}]",
             )
         return k
 
@@ -278,16 +296,17 @@ def _vertex(words: list[Any], where: str, grid: Grid) -> Vertex:
             beam = number(1, len(grid.beams), "beams")
             section = SECTIONS.index(named) if named in SECTIONS else number(2, 3, "sections")
             return Vertex("beam", beam, corner(3, 4), section)
-    raise InputError(f"{where} is {_shown(words)}; a vertex is {KEYS['vertex']}")
+    text = f"{where} is {shown(words)}; a vertex is {KEYS['vertex']}"
+    raise InputError(text, "task", where)
 
 
 def _line(error: Any) -> str:
     """Return one of pydantic's errors in our words."""
     place, value = error["loc"], error["input"]
-    where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in place).lstrip(".")
+    where = _place(place)
     if not place:
         keys = ", ".join(_keys(Task))
-        return f"is {_shown(value)}; a task is an object with the keys {keys}"
+        return f"is {shown(value)}; a task is an object with the keys {keys}"
     names = [k for k in place if isinstance(k, str)]
     hint = KEYS.get(names[-1], "")
     if error["type"] == "missing":
@@ -295,17 +314,13 @@ def _line(error: Any) -> str:
     if error["type"] == "extra_forbidden":
         keys = ", ".join(_keys(PLACES[names[-2]] if len(names) > 1 else Task))
         return f"{where} is not a key here; the keys are {keys}"
-    return f"{where} is {_shown(value)}; {hint}"
+    return f"{where} is {shown(value)}; {hint}"
 
 
 def _keys(model: type[BaseModel]) -> list[str]:
     return [field.alias or name for name, field in model.model_fields.items()]
 
 
-def _shown(value: Any, most: int = 40) -> str:
-    """Return a value as short, plain text on one line."""
-    try:
-        text = json.dumps(value)
-    except (TypeError, ValueError, RecursionError):
-        text = f"a {type(value).__name__}"
-    return text if len(text) <= most else text[: most - 3] + "..."
+def _place(keys: Sequence[str | int]) -> str:
+    """Return a path of keys and indices in words, as `goals[1].target[2]`."""
+    return "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")

@@ -7,6 +7,7 @@ and print settings. Nothing of it is repeated in code: another file is another m
 import hashlib
 import json
 import tomllib
+from collections.abc import Mapping
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -195,6 +196,13 @@ class Material(_Data):
                 mode="json", include={"section", "law", "shrinkage", "gravity", "creep"}
             )
         )
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with some values changed; its digests are its own."""
+        copy = super().model_copy(update=update, deep=deep)
+        for name in ("digest", "physics"):
+            copy.__dict__.pop(name, None)
+        return copy
 
     @property
     def identity(self) -> Identity:

@@ -34,13 +34,16 @@ Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 TOLERANCE = 1e-6  # mm, of the last motion of an iteration
+LOOSE = 1e-2  # mm, the same in frames that only lead to the last
 MOST = 60  # factorisations in a frame
 DESCENT = 600  # the same in a descent
-EXPECTED = 4.0  # mm from where the path leads, beyond which a frame is followed in small steps
-JUMP = 12.0  # mm, the same where the path does not lead on: gravity changes
+# Shares of the grid's dimension
+EXPECTED = 0.04  # from where the path leads, beyond which a frame is followed in small steps
+JUMP = 0.13  # the same where the path does not lead on: at first, and where gravity changes
+WIDER = 2.5  # times as much where only some of the frames are found
 SMALLEST = 1 / 32  # of a frame, the smallest step
 ALLOWED = 1.0  # mm that a small step may move more than twice what the step before did
-SNAP = 0.02  # of the grid's dimension: the least motion that is a snap
+SNAP = 0.03  # of the grid's dimension: the least motion that is a snap
 SHOVE = 0.1  # mm along the softest mode
 TURN = 3.0  # rad, by which a half-beam bends at most
 
@@ -88,6 +91,7 @@ class Path:
         left_balance: whether an unstable equilibrium was left, so that a mirrored shape exists.
         ended: whether every frame has a stable equilibrium.
         plain: whether no frame had to be followed in small steps.
+        tight: whether the frames before the last are as accurate as the last.
         jumped: (F,) whether a frame is beyond a snap that the frame before is not.
     """
 
@@ -99,6 +103,7 @@ class Path:
     left_balance: bool = False
     ended: bool = True
     plain: bool = True
+    tight: bool = True
     jumped: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
 
     @property
@@ -199,6 +204,7 @@ def trace(
         np.empty((count, nodes, 3)),
         np.zeros((count, INFO)),
         np.zeros((count, 2, len(grid.ratio), 6)),
+        tight=small_steps,
         jumped=np.zeros(count, np.bool_),
     )
     path.R[0, :joints] = np.eye(3).ravel()
@@ -209,7 +215,9 @@ def trace(
     if guide is not None:
         guided[:] = ~guide.jumped
         guided[1:] &= ~guide.jumped[:-1]
-    far = np.where(guided | (order > 0), EXPECTED, JUMP)
+    far = grid.dimension * np.where(guided | (order > 0), EXPECTED, JUMP)
+    if not small_steps:
+        far *= WIDER
     if len(far) > 1:
         far[1] = np.inf  # a grid that hangs down may go far at once
     k = 1
@@ -224,7 +232,7 @@ def trace(
         if path.jumped[k]:  # the path before tells nothing of what follows
             order[k + 1 : k + 4] = np.minimum(order[k + 1 : k + 4], [0, 1, 2][: count - k - 1])
             guided[k + 1 : k + 3] = False
-            far[k + 1 : k + 2] = JUMP
+            far[k + 1 : k + 2] = JUMP * grid.dimension
         k += 1
     if path.ended and not path.info[1:, WIDEST].max() < TURN**2:
         path.ended = False
@@ -246,10 +254,12 @@ def _follow(
 ) -> int:
     """Call the kernel; return the first frame that is not plain."""
     along = path if guide is None else guide
+    tolerances = np.full(len(frames.released), tolerance if path.tight else max(tolerance, LOOSE))
+    tolerances[-1] = tolerance
     return int(
         follow(
             grid.layout, grid.plan, grid.section, grid.load, grid.ratio, frames,
-            along.R, along.p, guided, begin, near, descend, shove, tolerance,
+            along.R, along.p, guided, begin, near, descend, shove, tolerances,
             DESCENT if descend else MOST, far, path.R, path.p, path.info, path.twists,
         )
     )  # fmt: skip
@@ -259,7 +269,7 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
     """Follow a frame in small steps from the one before; return whether it was reached."""
     before = path.info[k - 1, MOVED] if k > 1 else np.inf
     rate = before if np.isfinite(before) else 0.0  # mm per frame
-    at, step = 0.0, 0.25
+    at, step, goes_on = 0.0, 0.25, False
     short = Path(
         np.stack([path.R[k - 1]] * 2),
         np.stack([path.p[k - 1]] * 2),
@@ -272,7 +282,9 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
         now = _between(frames, k, to)
         near = k > 1 or at > 0
 
-        def find(descend: bool = False, shove: float = 0.0, now: Any = now, near: Any = near) -> bool:
+        def find(
+            descend: bool = False, shove: float = 0.0, now: Any = now, near: Any = near
+        ) -> bool:
             done = _follow(
                 grid, now, None, unguided, 1, anywhere, short, tolerance, near, descend, shove
             )
@@ -293,13 +305,16 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
             if not find(True, SHOVE if balanced else 0.0) and not find(True, SHOVE):
                 return False
             path.left_balance |= balanced
+            path.jumped[k] = True
             moved = float(short.info[1, MOVED])
-            if moved > SNAP * grid.dimension:
-                begun = frames.released[k - 1]
-                middle = (at + to) / 2
-                path.snaps.append(Snap(float(begun + middle * (frames.released[k] - begun)), k))
-                path.jumped[k] = True
+            snapped = not balanced and moved > SNAP * grid.dimension
+            begun = float(_between(frames, k, at).released[1])
+            if snapped and not goes_on and (k > 1 or begun > 0):
+                path.snaps.append(Snap(begun, k))
+            goes_on = snapped
             moved = 0.0
+        else:
+            goes_on = False
         rate = moved / (to - at) if moved > 0 else rate
         short.R[0], short.p[0] = short.R[1], short.p[1]
         at, step = to, min(2 * step, 0.25)
@@ -311,15 +326,20 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
 
 
 def _between(frames: Frames, k: int, part: float) -> Frames:
-    """Return what acts between two frames, all linear in between, as the second of two frames."""
+    """Return what acts between two frames, all linear in between, as the second of two frames.
 
-    def mixed(x: Numbers) -> Numbers:
+    From the flat frame on, gravity comes first, then the release.
+    """
+    heavy = min(1.0, 2 * part) if k == 1 else part
+    release = max(0.0, 2 * part - 1) if k == 1 else part
+
+    def mixed(x: Numbers, part: float) -> Numbers:
         return np.stack([x[k - 1], (1 - part) * x[k - 1] + part * x[k]])
 
     return Frames(
-        mixed(frames.released),
-        mixed(frames.gravity),
+        mixed(frames.released, release),
+        mixed(frames.gravity, heavy),
         np.zeros(2, np.int64),
-        mixed(frames.corrections),
+        mixed(frames.corrections, part),
         frames.corrected,
     )

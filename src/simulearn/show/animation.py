@@ -60,25 +60,25 @@ def write_gif(
 def _pictures(result: Result, camera: Camera, width: float, dpi: int) -> list[NDArray[np.uint8]]:
     """Return the pictures, (h, w, 3) each."""
     surface = skin(result, SPACING)
-    with style.paper():
-        fig = Figure(figsize=(width, width), dpi=dpi)
-        canvas = FigureCanvasAgg(fig)
-        low, high = extent(surface, camera, list(range(FRAMES)))
-        ax, inch = style.footed(fig, low, high)
-        draw_ghost(ax, surface, camera)
-        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.1 * inch, 0.2 * inch, camera)
-        words = style.words(fig, "")
-        style.legend(fig)
-        pictures = []
-        for moment in np.linspace(0, FRAMES - 1, BETWEEN * (FRAMES - 1) + 1):
-            before = min(int(moment), FRAMES - 2)
-            share = moment - before
-            now = (1 - share) * surface.vertices[before] + share * surface.vertices[before + 1]
-            drawn = draw_skin(ax, now, surface, result.grid.fixed, camera)
-            words.set_text(_stage(float(moment)))
-            canvas.draw()
-            pictures.append(np.array(canvas.buffer_rgba())[..., :3])
-            drawn.remove()
+    fig = Figure(figsize=(width, width), dpi=dpi)
+    canvas = FigureCanvasAgg(fig)
+    low, high = extent(surface, camera, list(range(FRAMES)))
+    ax, inch = style.footed(fig, low, high)
+    draw_ghost(ax, surface, camera)
+    draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.1 * inch, 0.2 * inch, camera)
+    words = style.words(fig, "")
+    style.legend(fig)
+    style.ink(fig)
+    pictures = []
+    for moment in np.linspace(0, FRAMES - 1, BETWEEN * (FRAMES - 1) + 1):
+        before = min(int(moment), FRAMES - 2)
+        share = moment - before
+        now = (1 - share) * surface.vertices[before] + share * surface.vertices[before + 1]
+        drawn = draw_skin(ax, now, surface, result.grid.fixed, camera)
+        words.set_text(_stage(float(moment)))
+        canvas.draw()
+        pictures.append(np.array(canvas.buffer_rgba())[..., :3])
+        drawn.remove()
     return pictures
 
 

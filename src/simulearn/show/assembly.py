@@ -80,13 +80,12 @@ def assembly(
         camera: where the viewer is.
         width: of the figure, inches.
     """
-    with style.paper():
-        surface = joined(parts)
-        low, high = extent(surface, camera, [0])
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, inch = style.footed(fig, low, high)
-        draw_skin(ax, surface.vertices[0], surface, parts[0][0].grid.fixed, camera)
-        draw_triad(ax, high[0] - 0.1 * inch, low[1] - 0.1 * inch, 0.2 * inch, camera)
-        style.words(fig, text)
-        style.legend(fig)
-    return fig
+    surface = joined(parts)
+    low, high = extent(surface, camera, [0])
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, inch = style.footed(fig, low, high)
+    draw_skin(ax, surface.vertices[0], surface, parts[0][0].grid.fixed, camera)
+    draw_triad(ax, high[0] - 0.1 * inch, low[1] - 0.1 * inch, 0.2 * inch, camera)
+    style.words(fig, text)
+    style.legend(fig)
+    return style.ink(fig)

@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the viewer is, seen from the grid, in degrees.
+    """Where the viewer is, from the grid, in degrees.
 
     Attributes:
         azimuth: from +x, about z.
@@ -37,5 +37,8 @@ class Camera:
         right, up, towards = self.axes
         key = -0.45 * right + 0.35 * up + 0.35 * towards + np.array([0, 0, 0.75])
         fill = 0.8 * right + 0.6 * towards
-        lamp = lambda v: np.clip(normals @ (v / np.linalg.norm(v)), 0, None)  # noqa: E731
+
+        def lamp(towards: Array) -> Array:
+            return np.clip(normals @ (towards / np.linalg.norm(towards)), 0, None)
+
         return np.minimum(0.46 + 0.5 * lamp(key) + 0.16 * lamp(fill), 1.0)

@@ -15,20 +15,19 @@ GRIDS = 6
 
 def dataset_picture(data: Dataset) -> Figure:
     """Return histograms of a data set, the paper's figures marked, above some of its designs."""
-    with style.paper():
-        figure = Figure(figsize=(8.4, 6.6), dpi=style.DPI, layout="constrained")
-        rows = np.atleast_1d(figure.subfigures(2, 1, height_ratios=[2.6, 1]))  # type: ignore[arg-type]
-        axes = rows[0].subplots(2, 3)
-        for ax, name in zip(axes.flat, SHOWN, strict=True):
-            _histogram(ax, quantities(data)[name])
-        for k, ax in enumerate(np.atleast_1d(rows[1].subplots(1, GRIDS))):
-            _design(ax, data, k)
-        figure.suptitle(
-            f"{data.config.name}: {len(data):,} trials, {len(data.failures)} failed, "
-            f"seed {data.config.seed}",
-            fontsize=10,
-        )
-    return figure
+    figure = Figure(figsize=(8.4, 6.6), dpi=style.DPI, layout="constrained")
+    rows = np.atleast_1d(figure.subfigures(2, 1, height_ratios=[2.6, 1]))  # type: ignore[arg-type]
+    axes = rows[0].subplots(2, 3)
+    for ax, name in zip(axes.flat, SHOWN, strict=True):
+        _histogram(ax, quantities(data)[name])
+    for k, ax in enumerate(np.atleast_1d(rows[1].subplots(1, GRIDS))):
+        _design(ax, data, k)
+    figure.suptitle(
+        f"{data.config.name}: {len(data):,} trials, {len(data.failures)} failed, "
+        f"seed {data.config.seed}",
+        fontsize=10,
+    )
+    return style.ink(figure)
 
 
 def _histogram(ax: Axes, quantity: Quantity) -> None:

@@ -1,7 +1,8 @@
 """The grid in space: its shaded skin, hidden parts hidden, with the flat grid as a ghost.
 
-Quadrilaterals are drawn from the farthest to the nearest (the painter's way). They are short and
-of similar size, so that sorting them by their middles is right; faces that look away are left out.
+Quadrilaterals are drawn from the farthest to the nearest (the painter's algorithm). They are
+short and of similar size, so that sorting them by their middles is right; faces turned away are
+left out.
 """
 
 from typing import Any
@@ -35,11 +36,11 @@ def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
     """Draw the flat grid in light grey beneath all else."""
     corners = surface.vertices[0][surface.quads]
     top = _normals(corners)[:, 2] > 0.5
-    seen = camera.see(corners)[..., :2]
+    projected = camera.see(corners)[..., :2]
     draw: Any = ax.add_collection
     fill: dict[str, Any] = {"facecolors": style.GHOST, "edgecolors": style.GHOST, "linewidths": 0.4}
-    draw(PolyCollection(list(seen[top]), zorder=1, **fill))
-    lines = _sharp_edges(seen, surface.sharp & top[:, None])
+    draw(PolyCollection(list(projected[top]), zorder=1, **fill))
+    lines = _sharp_edges(projected, surface.sharp & top[:, None])
     line: dict[str, Any] = {"facecolors": "none", "edgecolors": style.GHOST_LINE, "linewidths": 0.5}
     draw(PolyCollection(list(lines), closed=False, zorder=1.1, **line))
 
@@ -54,14 +55,14 @@ def draw_skin(
     corners, normals = corners[front], normals[front]
     rgb = style.colours(surface.ratio[front], surface.joint[front], fixed)
     rgb = rgb * camera.light(normals)[:, None]
-    seen = camera.see(corners)
+    projected = camera.see(corners)
 
     sharp = _outlined(surface, front)[front]
-    lines = _sharp_edges(seen, sharp)
-    depth = seen[..., 2].mean(axis=1)
+    lines = _sharp_edges(projected, sharp)
+    depth = projected[..., 2].mean(axis=1)
     above = np.maximum(lines[..., 2].mean(axis=1), depth[np.nonzero(sharp)[0]]) + LIFT
     ink = np.array(to_rgb(style.INK))
-    shapes = [*seen[..., :2], *lines[..., :2]]
+    shapes = [*projected[..., :2], *lines[..., :2]]
     order = np.argsort(np.concatenate([depth, above]))
     faces = np.concatenate([np.c_[rgb, np.ones(len(rgb))], np.zeros((len(lines), 4))])
     # A face's own colour around it closes the hairlines between neighbours.
@@ -82,8 +83,8 @@ def draw_skin(
 
 def extent(surface: Skin, camera: Camera, frames: list[int]) -> tuple[Array, Array]:
     """Return the lower left and upper right corner (2,) of what the frames cover, mm."""
-    seen = camera.see(surface.vertices[frames])[..., :2].reshape(-1, 2)
-    return seen.min(axis=0), seen.max(axis=0)
+    projected = camera.see(surface.vertices[frames])[..., :2].reshape(-1, 2)
+    return projected.min(axis=0), projected.max(axis=0)
 
 
 def draw_triad(ax: Axes, x: float, y: float, length: float, camera: Camera) -> None:
@@ -126,6 +127,21 @@ def dimensions(result: Result) -> str:
     return text.replace("-", "\N{MINUS SIGN}")
 
 
+def qualified(result: Result) -> list[str]:
+    """Return in few words what qualifies an answer, for the line beneath its picture."""
+    words = [] if result.stable else ["unstable balance"]
+    if result.snaps:
+        words.append("snaps at " + ", ".join(f"{snap.released:.0%}" for snap in result.snaps))
+    if result.bound_mm is not None:
+        words.append(f"error below {result.bound_mm:.2f} mm (9 of 10)")
+    others = [message for message in result.warnings if message.code != "snap"]
+    if len(others) == 1:
+        words.append(others[0].message)
+    elif others:
+        words.append(f"{len(others)} warnings")
+    return words
+
+
 def deformed(
     result: Result, frame: int = -1, camera: Camera = Camera(), width: float = 5.2
 ) -> Figure:
@@ -137,16 +153,16 @@ def deformed(
         camera: where the viewer is.
         width: of the figure, inches.
     """
-    with style.paper():
-        surface = skin(result, SPACING)
-        low, high = extent(surface, camera, [0, frame])
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, inch = style.footed(fig, low, high)
-        draw_deformed(ax, result, surface, frame, camera)
-        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
-        style.words(fig, dimensions(result))
-        style.legend(fig)
-    return fig
+    surface = skin(result, SPACING)
+    low, high = extent(surface, camera, [0, frame])
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, inch = style.footed(fig, low, high)
+    draw_deformed(ax, result, surface, frame, camera)
+    draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
+    style.words(fig, dimensions(result))
+    style.remark(fig, qualified(result))
+    style.legend(fig)
+    return style.ink(fig)
 
 
 def _outlined(surface: Skin, front: NDArray[np.bool_]) -> NDArray[np.bool_]:

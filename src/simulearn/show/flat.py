@@ -90,9 +90,8 @@ def flat(grid: Grid, numbers: bool = True, width: float = 5.2) -> Figure:
         numbers: whether joints and beams carry their numbers.
         width: of the figure, inches.
     """
-    with style.paper():
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, _ = style.footed(fig, *extent(grid))
-        draw_flat(ax, grid, numbers)
-        style.legend(fig)
-    return fig
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, _ = style.footed(fig, *extent(grid))
+    draw_flat(ax, grid, numbers)
+    style.legend(fig)
+    return style.ink(fig)

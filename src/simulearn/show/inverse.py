@@ -21,7 +21,7 @@ from simulearn.inverse.ranking import Ranking, Suggestion
 from simulearn.show import style
 from simulearn.show.animation import PAUSE, write_gif
 from simulearn.show.camera import Camera
-from simulearn.show.deformed import draw_deformed, draw_skin, draw_triad
+from simulearn.show.deformed import draw_deformed, draw_skin, draw_triad, qualified
 from simulearn.show.deformed import extent as extent_deformed
 from simulearn.show.flat import draw_flat
 from simulearn.show.flat import extent as extent_flat
@@ -41,36 +41,33 @@ def error_curve(steps: Sequence[Step], error_fea_mm: float | None = None) -> Fig
         steps: of a search.
         error_fea_mm: of its answer by finite elements.
     """
-    with style.paper():
-        figure = Figure(figsize=(7.2, 2.7), dpi=style.DPI, layout="constrained")
-        axes = figure.subplots(1, 2, sharey=True)
-        # A search that found its target exactly still has a place on the scale.
-        errors = [max(step.error_mm, 1e-3) for step in steps]
-        for ax, name, label in (
-            (axes[0], "iteration", "iteration"),
-            (axes[1], "designs", "designs simulated"),
-        ):
-            at = [getattr(step, name) for step in steps]
-            ax.step(at, errors, where="post", color=style.INK, lw=1.2)
-            ax.set_xlabel(label)
-            for a, b in pairwise(steps):
-                if a.phase != b.phase:
-                    ax.axvline(getattr(b, name), color=TARGET, lw=0.7, ls=":")
-            if error_fea_mm is not None:
-                ax.plot(at[-1], error_fea_mm, "o", color=TARGET, ms=4, clip_on=False)
-            ax.set_yscale("log")
-            ax.yaxis.set_major_formatter("{x:g}")
-            ax.yaxis.set_minor_formatter("")
-            ax.grid(axis="y", lw=0.3, color=style.GHOST_LINE)
-            ax.spines[["top", "right"]].set_visible(False)
-            ax.tick_params(which="both", labelsize=7)
-        axes[0].set_ylabel("fitting error, mm")
-        end = f"{steps[0].error_mm:.1f} mm to {steps[-1].error_mm:.2f} mm"
-        checked = (
-            "" if error_fea_mm is None else f"; by finite elements {error_fea_mm:.2f} mm (dot)"
-        )
-        axes[0].set_title(end + checked, fontsize=8, loc="left")
-    return figure
+    figure = Figure(figsize=(7.2, 2.7), dpi=style.DPI, layout="constrained")
+    axes = figure.subplots(1, 2, sharey=True)
+    # A search that reached its target exactly still has a place on the scale.
+    errors = [max(step.error_mm, 1e-3) for step in steps]
+    for ax, name, label in (
+        (axes[0], "iteration", "iteration"),
+        (axes[1], "designs", "designs simulated"),
+    ):
+        at = [getattr(step, name) for step in steps]
+        ax.step(at, errors, where="post", color=style.INK, lw=1.2)
+        ax.set_xlabel(label, fontsize=8)
+        for a, b in pairwise(steps):
+            if a.phase != b.phase:
+                ax.axvline(getattr(b, name), color=TARGET, lw=0.7, ls=":")
+        if error_fea_mm is not None:
+            ax.plot(at[-1], error_fea_mm, "o", color=TARGET, ms=4, clip_on=False)
+        ax.set_yscale("log")
+        ax.yaxis.set_major_formatter("{x:g}")
+        ax.yaxis.set_minor_formatter("")
+        ax.grid(axis="y", lw=0.3, color=style.GHOST_LINE)
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.tick_params(which="both", labelsize=7)
+    axes[0].set_ylabel("fitting error, mm", fontsize=8)
+    end = f"{steps[0].error_mm:.1f} mm to {steps[-1].error_mm:.2f} mm"
+    checked = "" if error_fea_mm is None else f"; by finite elements {error_fea_mm:.2f} mm (dot)"
+    axes[0].set_title(end + checked, fontsize=8, loc="left")
+    return style.ink(figure)
 
 
 def wanted(
@@ -85,17 +82,17 @@ def wanted(
         camera: where the viewer is.
         width: of the figure, inches.
     """
-    with style.paper():
-        surface = skin(result, SPACING)
-        low, high = _around([extent_deformed(surface, camera, [0, -1])], goals, camera)
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, inch = style.footed(fig, low, high)
-        draw_deformed(ax, result, surface, -1, camera)
-        draw_goals(ax, goals, _points(result, goals), camera)
-        draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
-        style.words(fig, f"{len(goals)} targets, mean distance {error_mm:.2f} mm ({result.engine})")
-        style.legend(fig)
-    return fig
+    surface = skin(result, SPACING)
+    low, high = _around([extent_deformed(surface, camera, [0, -1])], goals, camera)
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, inch = style.footed(fig, low, high)
+    draw_deformed(ax, result, surface, -1, camera)
+    draw_goals(ax, goals, _points(result, goals), camera)
+    draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
+    style.words(fig, f"{len(goals)} targets, mean distance {error_mm:.2f} mm ({result.engine})")
+    style.remark(fig, qualified(result))
+    style.legend(fig)
+    return style.ink(fig)
 
 
 def draw_goals(
@@ -134,25 +131,23 @@ def changing(
     """
     surfaces = [skin(result, SPACING) for result in results]
     flats = [extent_flat(result.grid) for result in results]
-    with style.paper():
-        left = _union(flats)
-        right = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
-        at, low, high = _beside(left, right)
-        pictures = []
-        for result, step, surface in zip(results, steps, surfaces, strict=True):
-            fig = Figure(figsize=(width, width), dpi=dpi)
-            canvas = FigureCanvasAgg(fig)
-            ax, _ = style.footed(fig, low, high)
-            draw_flat(ax, result.grid, False, at)
-            draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
-            draw_goals(ax, goals, _points(result, goals), camera)
-            style.words(fig, f"iteration {step.iteration}: {step.error_mm:.2f} mm")
-            style.legend(fig)
-            canvas.draw()
-            pictures.append(np.array(canvas.buffer_rgba())[..., :3])
-        write_gif(
-            pictures, [PAUSE, *[EACH] * (len(pictures) - 2), 2 * PAUSE][-len(pictures) :], path
-        )
+    left = _union(flats)
+    right = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
+    at, low, high = _beside(left, right)
+    pictures = []
+    for result, step, surface in zip(results, steps, surfaces, strict=True):
+        fig = Figure(figsize=(width, width), dpi=dpi)
+        canvas = FigureCanvasAgg(fig)
+        ax, _ = style.footed(fig, low, high)
+        draw_flat(ax, result.grid, False, at)
+        draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
+        draw_goals(ax, goals, _points(result, goals), camera)
+        style.words(fig, f"iteration {step.iteration}: {step.error_mm:.2f} mm")
+        style.legend(fig)
+        style.ink(fig)
+        canvas.draw()
+        pictures.append(np.array(canvas.buffer_rgba())[..., :3])
+    write_gif(pictures, [PAUSE, *[EACH] * (len(pictures) - 2), 2 * PAUSE][-len(pictures) :], path)
 
 
 def cards(
@@ -167,46 +162,43 @@ def cards(
         camera: where the viewer of the shapes is.
     """
     surfaces = [skin(result, SPACING) for result in results]
-    with style.paper():
-        plans = _union([extent_flat(result.grid) for result in results])
-        shapes = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
-        across = max(float(b[0] - a[0]) for a, b in (plans, shapes))
-        tall = [float(b[1] - a[1]) / across for a, b in (plans, shapes)]
-        count, width = len(results), 1.75
-        size = (width * count, width * (sum(tall) + 0.1) + 0.95)
-        fig = Figure(figsize=size, dpi=style.DPI)
-        for k, (one, result, surface) in enumerate(
-            zip(ranking.best, results, surfaces, strict=True)
-        ):
-            top = 1 - 0.48 / size[1]
-            for (low, high), height in zip((plans, shapes), tall, strict=True):
-                share = width * height / size[1]
-                ax = fig.add_axes(((k + 0.04) / count, top - share, 0.92 / count, share))
-                middle = (low + high)[0] / 2
-                ax.set_xlim(middle - across / 2, middle + across / 2)
-                ax.set_ylim(low[1], high[1])
-                ax.set_aspect("equal")
-                ax.axis("off")
-                top -= share + 0.1 * width / size[1]
-                if ax is fig.axes[2 * k]:
-                    draw_flat(ax, result.grid, False)
-                    _mark(ax, one, ranking.grid)
-                else:
-                    draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
-                    if goals is not None:
-                        draw_goals(ax, goals, one.points, camera, 3.5)
-            x = (k + 0.06) / count
-            fig.text(x, 1 - 0.14 / size[1], f"{k + 1}  {one.change.words}", fontsize=7, va="center",
-                     fontweight="bold")  # fmt: skip
-            fig.text(x, 1 - 0.32 / size[1], _promise(ranking, one, goals), fontsize=7, va="center")
-        style.legend(fig)
-    return fig
+    plans = _union([extent_flat(result.grid) for result in results])
+    shapes = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
+    across = max(float(b[0] - a[0]) for a, b in (plans, shapes))
+    tall = [float(b[1] - a[1]) / across for a, b in (plans, shapes)]
+    count, width = len(results), 1.75
+    size = (width * count, width * (sum(tall) + 0.1) + 0.95)
+    fig = Figure(figsize=size, dpi=style.DPI)
+    for k, (one, result, surface) in enumerate(zip(ranking.best, results, surfaces, strict=True)):
+        top = 1 - 0.48 / size[1]
+        for (low, high), height in zip((plans, shapes), tall, strict=True):
+            share = width * height / size[1]
+            ax = fig.add_axes(((k + 0.04) / count, top - share, 0.92 / count, share))
+            middle = (low + high)[0] / 2
+            ax.set_xlim(middle - across / 2, middle + across / 2)
+            ax.set_ylim(low[1], high[1])
+            ax.set_aspect("equal")
+            ax.axis("off")
+            top -= share + 0.1 * width / size[1]
+            if ax is fig.axes[2 * k]:
+                draw_flat(ax, result.grid, False)
+                _mark(ax, one, ranking.grid)
+            else:
+                draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
+                if goals is not None:
+                    draw_goals(ax, goals, one.points, camera, 3.5)
+        x = (k + 0.06) / count
+        fig.text(x, 1 - 0.14 / size[1], f"{k + 1}  {one.change.words}", fontsize=7, va="center",
+                 fontweight="bold")  # fmt: skip
+        fig.text(x, 1 - 0.32 / size[1], _promise(ranking, one, goals), fontsize=7, va="center")
+    style.legend(fig)
+    return style.ink(fig)
 
 
 def _promise(ranking: Ranking, one: Suggestion, goals: Goals | None) -> str:
     if goals is None:
-        return f"moves the joints by {one.moved_mm:.2f} mm"
-    return f"{ranking.error_mm:.2f} → {one.error_mm:.2f} mm"
+        return f"moves the joints by {one.moved_mm:.1f} mm"
+    return f"{ranking.error_mm:.1f} → {one.error_mm:.1f} mm"
 
 
 def _mark(ax: Axes, one: Suggestion, before: Grid) -> None:
@@ -232,8 +224,8 @@ def _around(
     """Return the lower left and upper right corner (2,) of extents and targets together."""
     if goals is None:
         return _union(extents)
-    seen = camera.see(goals.targets)[:, :2]
-    return _union([*extents, (seen.min(axis=0), seen.max(axis=0))])
+    placed = camera.see(goals.targets)[:, :2]
+    return _union([*extents, (placed.min(axis=0), placed.max(axis=0))])
 
 
 def _union(extents: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:

@@ -1,18 +1,18 @@
-"""How pictures look: colours, line weights, legend, scale bar.
+"""The style of pictures: colours, line weights, legend, scale bar.
 
 Top and bottom actuators have the vermillion and blue of Okabe and Ito's palette, which people with
 any common colour blindness tell apart; a longer actuator has a deeper tint of them.
 """
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from textwrap import shorten
 
-import matplotlib
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.offsetbox import AnchoredOffsetbox, DrawingArea, HPacker, TextArea
 from matplotlib.patches import Rectangle
 from matplotlib.text import Text
@@ -24,22 +24,24 @@ PASSIVE, JOINT, FIXED = "#dcdcdc", "#a6a6a6", "#3a3a3a"
 GHOST, GHOST_LINE = "#f0f0f0", "#cfcfcf"
 INK, LINE = "#262626", "#4d4d4d"
 PALEST = 0.42  # of the full hue, the tint of a very short actuator
+PLAIN = ("black", "k", "#000000")  # the colours of a text that nobody coloured
 DPI = 200
+LETTERS = 20  # of a remark in an inch
 
 
-@contextmanager
-def paper() -> Iterator[None]:
-    """Text and lines as a paper has them."""
-    with matplotlib.rc_context(
-        {
-            "font.size": 8,
-            "text.color": INK,
-            "svg.fonttype": "none",
-            "pdf.fonttype": 42,
-            "lines.solid_capstyle": "round",
-        }
-    ):
-        yield
+def ink(fig: Figure) -> Figure:
+    """Give texts and lines of a finished figure the ink of a paper, and return the figure.
+
+    Matplotlib's settings belong to the whole process, so they are left alone: a figure is styled
+    when it is finished, and sizes stand where texts are written.
+    """
+    for text in fig.findobj(Text):
+        if text.get_color() in PLAIN:
+            text.set_color(INK)
+    for line in fig.findobj(Line2D):
+        if line.get_solid_capstyle() == "projecting":
+            line.set_solid_capstyle("round")
+    return fig
 
 
 def tint(ratio: ArrayLike) -> NDArray[np.float64]:
@@ -110,6 +112,15 @@ def words(fig: Figure, text: str) -> Text:
     width, height = fig.get_size_inches()
     right = 1 - 0.25 / width
     return fig.text(right, 0.4 / height, text, ha="right", va="center_baseline", fontsize=7)
+
+
+def remark(fig: Figure, lines: Sequence[str]) -> None:
+    """Write what qualifies an answer in a line above the legend, if there is anything."""
+    if lines:
+        width, height = fig.get_size_inches()
+        text = shorten("; ".join(lines), int(LETTERS * width), placeholder=" ...")
+        place = (1 - 0.25 / width, 0.27 / height)
+        fig.text(*place, text, ha="right", va="center_baseline", fontsize=6, color=TOP)
 
 
 def legend(fig: Figure, inches: float = 0.1) -> None:

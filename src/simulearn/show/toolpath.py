@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 COLOURS = {SKIRT: "#b7b7b7", SHELL: "#4a4a4a", PASSIVE: "#cfcfcf", JOINT: "#8f8f8f"}
 TRAVEL = "#009e73"  # of the same palette as the halves
 COLUMNS = 4
-PART, WHOLE = 0.82, 1.5  # of a bead's width: told apart, or closed to an area
+PART, CLOSED = 0.82, 1.5  # of a bead's width: distinct, or closed to an area
 
 
 def layers(path: Toolpath, title: str = "", width: float = 7.2) -> Figure:
@@ -44,37 +44,34 @@ def layers(path: Toolpath, title: str = "", width: float = 7.2) -> Figure:
     side, words = width / columns, 0.17  # inches
     tall = side * float((high - low)[1] / (high - low)[0]) + words
     height = rows * tall + style.FOOT
-    with style.paper():
-        fig = Figure(figsize=(width, height), dpi=style.DPI)
-        inch = float((high - low)[0] / side)
-        for k, layer in enumerate(path.layers):
-            row, column = divmod(k, columns)
-            bottom = style.FOOT + (rows - 1 - row) * tall
-            place = (
-                column / columns,
-                bottom / height,
-                1 / columns,
-                (tall - words) / height,
-            )
-            ax = _axes(fig, place, low, high)
-            _beads(ax, layer, _top(path, k), WHOLE * 72 / inch, skirt=False)
-            fig.text(
-                place[0] + 0.5 / columns,
-                (bottom + tall - 0.6 * words) / height,
-                f"layer {k + 1}, z {layer.z:.2f} mm",
-                ha="center",
-                va="center_baseline",
-                fontsize=6.5,
-            )
-        foot = _axes(
-            fig, (0, 0, 1, style.FOOT / height), np.zeros(2), np.array([width, style.FOOT])
+    fig = Figure(figsize=(width, height), dpi=style.DPI)
+    inch = float((high - low)[0] / side)
+    for k, layer in enumerate(path.layers):
+        row, column = divmod(k, columns)
+        bottom = style.FOOT + (rows - 1 - row) * tall
+        place = (
+            column / columns,
+            bottom / height,
+            1 / columns,
+            (tall - words) / height,
         )
-        length = style.nice_length(float((high - low)[0]) * 2)
-        _bar(foot, 0.06 * side, 0.4, length, 1 / inch)
-        style.words(fig, title)
-        roles = {bead.role for q in path.layers for bead in q.beads} - {SKIRT}
-        _legend(fig, roles, (style.BOTTOM, style.TOP), travels=False)
-    return fig
+        ax = _axes(fig, place, low, high)
+        _beads(ax, layer, _top(path, k), CLOSED * 72 / inch, skirt=False)
+        fig.text(
+            place[0] + 0.5 / columns,
+            (bottom + tall - 0.6 * words) / height,
+            f"layer {k + 1}, z {layer.z:.2f} mm",
+            ha="center",
+            va="center_baseline",
+            fontsize=6.5,
+        )
+    foot = _axes(fig, (0, 0, 1, style.FOOT / height), np.zeros(2), np.array([width, style.FOOT]))
+    length = style.nice_length(float((high - low)[0]) * 2)
+    _bar(foot, 0.06 * side, 0.4, length, 1 / inch)
+    style.words(fig, title)
+    roles = {bead.role for q in path.layers for bead in q.beads} - {SKIRT}
+    _legend(fig, roles, (style.BOTTOM, style.TOP), travels=False)
+    return style.ink(fig)
 
 
 def layer(path: Toolpath, number: int, title: str = "", width: float = 5.2) -> Figure:
@@ -88,15 +85,14 @@ def layer(path: Toolpath, number: int, title: str = "", width: float = 5.2) -> F
     """
     shown = path.layers[number]
     low, high = _extent((shown,), skirt=True)
-    with style.paper():
-        fig = Figure(figsize=(width, width), dpi=style.DPI)
-        ax, inch = style.footed(fig, low, high)
-        _beads(ax, shown, _top(path, number), PART * 72 / inch, skirt=True)
-        _travels(ax, shown)
-        style.words(fig, title)
-        colour = style.TOP if _top(path, number) else style.BOTTOM
-        _legend(fig, {bead.role for bead in shown.beads}, (colour,), travels=True)
-    return fig
+    fig = Figure(figsize=(width, width), dpi=style.DPI)
+    ax, inch = style.footed(fig, low, high)
+    _beads(ax, shown, _top(path, number), PART * 72 / inch, skirt=True)
+    _travels(ax, shown)
+    style.words(fig, title)
+    colour = style.TOP if _top(path, number) else style.BOTTOM
+    _legend(fig, {bead.role for bead in shown.beads}, (colour,), travels=True)
+    return style.ink(fig)
 
 
 def _top(path: Toolpath, number: int) -> bool:
@@ -129,16 +125,18 @@ def _beads(ax: Axes, shown: Layer, top: bool, points: float, skirt: bool) -> Non
         pieces = np.concatenate([np.stack([b.points[:-1], b.points[1:]], axis=1) for b in beads])
         widths = np.concatenate([b.widths for b in beads]) * points
         draw: Any = ax.add_collection
-        look: dict[str, Any] = {"colors": colour, "linewidths": widths, "capstyle": "round"}
-        draw(LineCollection(list(pieces), **look), autolim=False)
+        kind: dict[str, Any] = {"colors": colour, "linewidths": widths, "capstyle": "round"}
+        draw(LineCollection(list(pieces), **kind), autolim=False)
 
 
 def _travels(ax: Axes, shown: Layer) -> None:
-    """Draw the ways between beads."""
-    ways = [(a.points[-1], b.points[0]) for a, b in zip(shown.beads, shown.beads[1:], strict=False)]
-    look: dict[str, Any] = {"colors": TRAVEL, "linewidths": 0.6, "linestyles": (0, (3, 1.5))}
+    """Draw the travels between beads."""
+    travels = [
+        (a.points[-1], b.points[0]) for a, b in zip(shown.beads, shown.beads[1:], strict=False)
+    ]
+    kind: dict[str, Any] = {"colors": TRAVEL, "linewidths": 0.6, "linestyles": (0, (3, 1.5))}
     draw: Any = ax.add_collection
-    draw(LineCollection(ways, zorder=4, **look), autolim=False)
+    draw(LineCollection(travels, zorder=4, **kind), autolim=False)
     x, y = shown.beads[0].points[0]
     ax.plot([x], [y], "o", ms=3, color=TRAVEL, zorder=4)
 

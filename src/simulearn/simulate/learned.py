@@ -2,29 +2,35 @@
 
 import time
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from simulearn.errors import ComputationError, InputError
-from simulearn.grid import Grid, TrainingRange
+from simulearn.errors import Cancel, InputError, Message, stop_if
+from simulearn.grid import Grid, TrainingRange, make
 from simulearn.learn.common.bundle import Bundle, bundle_of
-from simulearn.learn.common.model import Designs, Frames
-from simulearn.material import load_material
-from simulearn.simulate.engines import checked_grid
-from simulearn.simulate.result import FRAMES, Result
+from simulearn.learn.common.model import Designs, Frames, last_frame
+from simulearn.material import Material
+from simulearn.simulate.checked import Checked, check_all
+from simulearn.simulate.engines import in_order
+from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
 from simulearn.simulate.simulator import Progress
+
+BATCH = 256  # designs in one call of the model, so that memory stays bounded
+HINT = "finite elements may have an answer"
+MATERIAL_HINT = "simulate by finite elements, or train a model for this material"
 
 
 @dataclass(frozen=True)
 class Learned:
-    """A Simulator that asks a learned model.
+    """A Simulator whose answers come from a learned model.
 
     Attributes:
         bundle: the model and what is known of it.
+        name: of the engine.
     """
 
     bundle: Bundle
@@ -38,65 +44,150 @@ class Learned:
             InputError: there is no such model, or it is damaged.
         """
         bundle = bundle_of(model)
-        bundle.model  # noqa: B018  (what is wrong with it is told now)
-        return cls(bundle)
+        return cls(_loaded(bundle.path.resolve(), bundle.identity.digest))
 
     @property
     def training(self) -> TrainingRange:
-        """What the model has seen in training; `validate` warns of grids outside."""
+        """The sizes of the designs that the model has learnt."""
         return self.bundle.card.range
 
-    def simulate(self, grids: Sequence[Grid], progress: Progress | None = None) -> list[Result]:
-        """Return the results of the grids, in their order; see `Simulator.simulate`."""
-        checked = [checked_grid(grid)[0] for grid in grids]
-        card, groups = self.bundle.card, defaultdict(list)
-        for k, grid in enumerate(checked):
-            material = load_material(grid.material)
-            if material.physics != card.material.physics:
-                raise InputError(
-                    f'material is {material.identity}; the model "{card.name}" has learnt '
-                    f"{card.material.identity}"
-                )
-            groups[len(grid.joints), grid.fixed, grid.beams.tobytes()].append(k)
-        results: dict[int, Result] = {}
-        for members in groups.values():
-            begun = time.perf_counter()
-            frames = self.bundle.model.rollout(_designs([checked[k] for k in members]))
-            seconds = (time.perf_counter() - begun) / len(members)
-            for t, k in enumerate(members):
-                results[k] = self._result(checked[k], frames, t, seconds)
-                if progress is not None:
-                    progress(FRAMES * len(results), FRAMES * len(checked))
-        return [results[k] for k in range(len(checked))]
+    @property
+    def material(self) -> Material:
+        """The material system that the model has learnt."""
+        return self.bundle.card.material
 
-    def _result(self, grid: Grid, frames: Frames, t: int, seconds: float) -> Result:
-        card = self.bundle.card
+    def simulate(
+        self,
+        grids: Sequence[Grid],
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> list[Outcome]:
+        """Return the outcomes of the grids, in their order; see `Simulator.simulate`."""
+        return in_order(self.stream(grids, progress, cancel), len(grids))
+
+    def stream(
+        self,
+        grids: Sequence[Grid],
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> Iterator[tuple[int, Outcome]]:
+        """Yield (place in grids, outcome) after each batch; see `Simulator.simulate`."""
+        groups: dict[tuple[int, int, bytes], list[tuple[int, Checked]]] = defaultdict(list)
+        for k, checked in enumerate(check_all(grids, self.training)):
+            if isinstance(checked, Failure):
+                yield k, checked
+            elif wrong := self._not_learnt(checked.material):
+                yield k, Failure.of(checked.given, wrong, MATERIAL_HINT)
+            else:
+                grid = checked.grid
+                groups[len(grid.joints), grid.fixed, grid.beams.tobytes()].append((k, checked))
+        done, total = 0, sum(map(len, groups.values()))
+        for members in groups.values():
+            for first in range(0, len(members), BATCH):
+                batch = members[first : first + BATCH]
+                stop_if(cancel)
+                yield from self._answers(batch)
+                done += len(batch)
+                if progress is not None:
+                    progress(FRAMES * done, FRAMES * total)
+
+    def warm(self) -> None:
+        """Compile what the first simulation would wait for, of one design and of many."""
+        small = make("flat", (1, 1), 50.0)
+        for count in (1, 4):
+            designs = designs_of([small] * count, self.material)
+            self.bundle.model.rollout(designs)
+            last_frame(self.bundle.model, designs)
+
+    def _answers(self, batch: Sequence[tuple[int, Checked]]) -> Iterator[tuple[int, Outcome]]:
+        """Yield the outcomes of designs of one topology."""
+        begun = time.perf_counter()
+        frames = self.bundle.model.rollout(
+            designs_of([one.grid for _, one in batch], self.bundle.card.material)
+        )
+        seconds = (time.perf_counter() - begun) / len(batch)
+        for t, (k, one) in enumerate(batch):
+            yield k, self._outcome(one, frames, t, seconds)
+
+    def _outcome(self, one: Checked, frames: Frames, t: int, seconds: float) -> Outcome:
         joints, sections = frames.joints[t], frames.sections[t]
         if not (frames.converged[t] and np.isfinite(joints).all() and np.isfinite(sections).all()):
-            raise ComputationError(
-                f'the model "{card.name}" has no answer for this grid; ask --engine fea'
-            )
-        record: dict[str, Any] = {"model": card.name, "kind": card.kind}
-        if frames.bound_mm is not None:
-            record["bound_mm"] = float(frames.bound_mm[t])
+            message = f'the model "{self.bundle.card.name}" has no answer for this grid'
+            return Failure(one.given, "no-answer", "grid", message, HINT)
+        stable, snaps = getattr(frames, "stable", None), getattr(frames, "snaps", None)
         return Result(
-            grid=grid,
+            grid=one.grid,
             engine=self.name,
             joints=joints,
             beams=sections,
             stress=None if frames.stress is None else frames.stress[t],
             seconds=seconds,
-            record=record,
+            material=one.material.identity,
+            model=self.bundle.identity,
+            stable=True if stable is None else bool(stable[t]),
+            bound_mm=None if frames.bound_mm is None else float(frames.bound_mm[t]),
+            snaps=() if snaps is None else tuple(snaps[t]),
+            warnings=(*one.warnings, *self._unlike(one.grid), *_left_balance(frames, t)),
+            record={"kind": self.bundle.card.kind},
+        )
+
+    def _unlike(self, grid: Grid) -> Iterator[Message]:
+        """Yield a warning where a grid's topology is not the one that was learnt."""
+        bound = getattr(self.bundle.model, "bound", None)
+        if bound is None:
+            return
+        joints, beams = (int(n) for n in bound.counts)
+        if (len(grid.joints), len(grid.beams)) != (joints, beams):
+            yield Message(
+                "topology-unlike",
+                "grid",
+                f"the grid has {len(grid.joints)} joints and {len(grid.beams)} beams, the model "
+                f"has learnt {joints} and {beams}; its error bound is wider, and less sure",
+            )
+
+    def require(self, material: Material) -> None:
+        """Raise InputError where a material is not the one that the model has learnt."""
+        if wrong := self._not_learnt(material):
+            raise wrong
+
+    def _not_learnt(self, material: Material) -> InputError | None:
+        learnt = self.material
+        if material.physics == learnt.physics:  # whatever it is called
+            return None
+        return InputError(
+            f"material is {material.identity}; "
+            f'the model "{self.bundle.card.name}" has learnt {learnt.identity}',
+            "material-not-learnt",
+            "material",
         )
 
 
-def _designs(grids: Sequence[Grid]) -> Designs:
-    """Return grids of one topology as designs."""
+@lru_cache(maxsize=8)
+def _loaded(path: Path, digest: str) -> Bundle:
+    """Return a folder's bundle with its weights in memory; the same one (digest) is read once."""
+    bundle = bundle_of(path)
+    bundle.model  # noqa: B018  (reads the weights, or raises)
+    return bundle
+
+
+def _left_balance(frames: Frames, t: int) -> Iterator[Message]:
+    """Yield a warning where a design has left an unstable balance."""
+    left = getattr(frames, "left_balance", None)
+    if left is not None and left[t]:
+        yield Message(
+            "unstable-balance",
+            "grid",
+            "the grid stood on an unstable balance and left it along its softest mode; the "
+            "mirrored shape is as likely",
+        )
+
+
+def designs_of(grids: Sequence[Grid], material: Material) -> Designs:
+    """Return grids of one topology as designs of a material."""
     return Designs(
         beams=grids[0].beams,
         fixed=grids[0].fixed,
         flat=np.stack([grid.joints for grid in grids]),
         actuators=np.stack([grid.actuators for grid in grids]),
-        material=load_material(grids[0].material),
-        reference=grids[0].material,
+        material=material,
     )

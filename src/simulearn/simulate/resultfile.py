@@ -1,7 +1,8 @@
-"""Results in files: JSON for the shape, NPZ for everything.
+"""Outcomes in files: JSON for the shape, NPZ for everything.
 
-The JSON form holds what every program can use: design, corners, time. The NPZ form adds the
-stresses, the solver's record and the solid mesh, each array with its unit written beside it.
+The JSON form holds what every program can use: design, corners, time, and what qualifies the
+answer. The NPZ form adds the stresses, the solver's record and the solid mesh, each array with its
+unit written beside it. A design without a result has a JSON form, too: the reason.
 """
 
 import dataclasses
@@ -13,12 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
 from simulearn.grid import grid_from_dict, grid_to_dict
-from simulearn.simulate.result import FRAMES, Result
+from simulearn.material import Identity
+from simulearn.schedule import Snap
+from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
 
 SCHEMA = "simulearn.result/1"
+FAILURE = "simulearn.failure/1"
 DIGITS = 6  # of a mm: a nanometre, below what any engine resolves
 SOLID = "solid_"
 UNITS = {
@@ -28,7 +32,9 @@ UNITS = {
     "stress": "MPa; frame, beam, section (start, before middle, after middle, end), corner, "
     "component (11 22 33 12 13 23, global axes)",
     "seconds": "s; time the simulation took",
-    "record": "JSON; what the engine tells about its work",
+    "record": "JSON; of the solver's work",
+    "qualities": "JSON; stable, bound_mm (mm), snaps (released fraction, frame), warnings, "
+    "material and model (name, SHA-256)",
     "displacements": "mm; frame, node of the solid, xyz",
     "solid_nodes": "mm; node, xyz, in the flat grid",
     "solid_bricks": "node indices; brick, 20 nodes in the order of scikit-fem's ElementHexS2",
@@ -45,6 +51,22 @@ UNITS = {
 }
 
 
+def outcome_to_dict(outcome: Outcome) -> dict[str, Any]:
+    """Return the machine form of a result or failure."""
+    return failure_to_dict(outcome) if isinstance(outcome, Failure) else result_to_dict(outcome)
+
+
+def failure_to_dict(failure: Failure) -> dict[str, Any]:
+    """Return the machine form of a failure, schema `simulearn.failure/1`."""
+    return {
+        "schema": FAILURE,
+        "code": failure.code,
+        "where": failure.where,
+        "message": failure.message,
+        "hint": failure.hint,
+    }
+
+
 def result_to_dict(result: Result) -> dict[str, Any]:
     """Return the machine form of a result, schema `simulearn.result/1`; mm, s."""
     return {
@@ -54,6 +76,20 @@ def result_to_dict(result: Result) -> dict[str, Any]:
         "joints": _rounded(result.joints),
         "beams": _rounded(result.beams),
         "seconds": round(float(result.seconds), 3),
+        **qualities(result),
+    }
+
+
+def qualities(result: Result) -> dict[str, Any]:
+    """Return what qualifies an answer, as plain data."""
+    model = result.model
+    return {
+        "stable": result.stable,
+        "bound_mm": None if result.bound_mm is None else round(result.bound_mm, DIGITS),
+        "snaps": [dataclasses.asdict(snap) for snap in result.snaps],
+        "warnings": [dataclasses.asdict(message) for message in result.warnings],
+        "material": {"name": result.material.name, "digest": result.material.digest},
+        "model": None if model is None else {"name": model.name, "digest": model.digest},
     }
 
 
@@ -71,11 +107,11 @@ def result_from_dict(data: Any, *, paths: bool = False) -> Result:
         raise InputError(f'schema: a result has "schema": "{SCHEMA}"')
     for key in ("grid", "engine", "joints", "beams", "seconds"):
         if key not in data:
-            raise InputError(f"{key}: is missing")
+            raise InputError(f"{key}: is missing", "result", key)
     if not isinstance(data["engine"], str):
-        raise InputError("engine: is not a name")
+        raise InputError("engine: is not a name", "result", "engine")
     if not isinstance(data["seconds"], int | float) or not np.isfinite(data["seconds"]):
-        raise InputError("seconds: is not a number")
+        raise InputError("seconds: is not a number", "result", "seconds")
     grid = grid_from_dict(data["grid"], paths=paths)
     return Result(
         grid=grid,
@@ -84,13 +120,49 @@ def result_from_dict(data: Any, *, paths: bool = False) -> Result:
         beams=_numbers(data, "beams", (FRAMES, len(grid.beams), 3, 4, 3)),
         stress=None,
         seconds=float(data["seconds"]),
+        **_qualities(data, grid.material),
     )
 
 
-def write_json(result: Result, path: Path | str) -> None:
-    """Write the machine form of a result."""
+def _qualities(data: dict[str, Any], material: str) -> dict[str, Any]:
+    """Return the fields of a result that qualify it; files of earlier versions have none."""
+    bound = data.get("bound_mm")
+    if not isinstance(data.get("stable", True), bool):
+        raise InputError("stable: is not true or false", "result", "stable")
+    if bound is not None and not (isinstance(bound, int | float) and np.isfinite(bound)):
+        raise InputError("bound_mm: is not a number", "result", "bound_mm")
+    model = data.get("model")
+    return {
+        "material": _read(data, "material", Identity, {"name": material, "digest": ""}),
+        "model": None if model is None else _read(data, "model", Identity, None),
+        "stable": data.get("stable", True),
+        "bound_mm": None if bound is None else float(bound),
+        "snaps": _read_all(data, "snaps", Snap),
+        "warnings": _read_all(data, "warnings", Message),
+    }
+
+
+def _read(data: dict[str, Any], key: str, kind: type, default: Any) -> Any:
+    """Return an object of a type with the fields that a key holds."""
+    try:
+        return kind(**data.get(key, default))
+    except (TypeError, ValueError) as error:
+        fields = ", ".join(kind.__annotations__)
+        raise InputError(f"{key}: is not an object with {fields}", "result", key) from error
+
+
+def _read_all(data: dict[str, Any], key: str, kind: type) -> tuple[Any, ...]:
+    """Return the objects of a type that a key lists."""
+    rows = data.get(key, [])
+    if not isinstance(rows, list):
+        raise InputError(f"{key}: is not a list", "result", key)
+    return tuple(_read({key: row}, key, kind, None) for row in rows)
+
+
+def write_json(outcome: Outcome, path: Path | str) -> None:
+    """Write the machine form of a result or failure."""
     with replacing(path) as temporary:
-        temporary.write_text(json.dumps(result_to_dict(result), allow_nan=False), "utf-8")
+        temporary.write_text(json.dumps(outcome_to_dict(outcome), allow_nan=False), "utf-8")
 
 
 def read_json(path: Path | str, *, paths: bool = False) -> Result:
@@ -108,7 +180,9 @@ def read_json(path: Path | str, *, paths: bool = False) -> Result:
     except json.JSONDecodeError as error:
         raise InputError(f"{path}: is not valid JSON: {error}") from error
     except InputError as error:
-        raise error if str(path) in str(error) else InputError(f"{path}: {error}") from error
+        if str(path) in str(error):
+            raise
+        raise InputError(f"{path}: {error}", error.code, error.where) from error
 
 
 def write_npz(result: Result, path: Path | str) -> None:
@@ -121,6 +195,7 @@ def write_npz(result: Result, path: Path | str) -> None:
         "beams": result.beams,
         "seconds": result.seconds,
         "record": json.dumps(result.record, default=_plain),
+        "qualities": json.dumps(qualities(result)),
     }
     if result.stress is not None:
         arrays["stress"] = result.stress
@@ -163,6 +238,7 @@ def read_npz(path: Path | str, *, paths: bool = False) -> Result:
                 **{key: arrays[key].item() for key in ("schema", "engine", "seconds")},
                 **{key: arrays[key] for key in ("joints", "beams")},
                 "grid": json.loads(arrays["grid"].item()),
+                **(json.loads(arrays["qualities"].item()) if "qualities" in arrays else {}),
             },
             paths=paths,
         )
@@ -188,11 +264,13 @@ def _numbers(data: dict[str, Any], key: str, shape: tuple[int, ...]) -> NDArray[
     try:
         array = np.asarray(data[key], dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise InputError(f"{key}: is not an array of numbers") from error
+        raise InputError(f"{key}: is not an array of numbers", "result", key) from error
     if array.shape != shape:
-        raise InputError(f"{key}: has the shape {array.shape}; this grid's is {shape}")
+        raise InputError(
+            f"{key}: has the shape {array.shape}; this grid's is {shape}", "result", key
+        )
     if not np.isfinite(array).all():
-        raise InputError(f"{key}: holds a number that is not finite")
+        raise InputError(f"{key}: holds a number that is not finite", "result", key)
     return array
 
 

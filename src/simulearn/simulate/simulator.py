@@ -1,4 +1,4 @@
-"""The one interface to every engine: grids in, results out.
+"""The one interface to every engine: grids in, an outcome for each of them out.
 
 Inverse design, pictures and the command line know this and not which engine answers.
 """
@@ -6,29 +6,39 @@ Inverse design, pictures and the command line know this and not which engine ans
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
+from simulearn.errors import Cancel
 from simulearn.grid import Grid
-from simulearn.simulate.result import Result
+from simulearn.simulate.result import Outcome
 
 Progress = Callable[[int, int], None]  # (frames done, frames in all)
 
 
 class Simulator(Protocol):
-    """An engine that tells how grids morph."""
+    """An engine that predicts how grids morph; it may be called from several threads."""
 
     @property
     def name(self) -> str:
-        """Name of the engine, as `--engine` takes it."""
+        """Name of the engine."""
         ...
 
-    def simulate(self, grids: Sequence[Grid], progress: Progress | None = None) -> list[Result]:
-        """Return the results of the grids, in their order.
+    def simulate(
+        self,
+        grids: Sequence[Grid],
+        progress: Progress | None = None,
+        cancel: Cancel | None = None,
+    ) -> list[Outcome]:
+        """Return the outcomes of the grids, in their order.
+
+        A grid that is not valid, or has no answer, is a Failure in its place.
 
         Args:
             grids: the designs.
-            progress: called after every frame with the frames done and the frames in all.
+            progress: called with the frames done and the frames in all, over all grids: after
+                each frame by an engine that computes frame by frame, after each batch by others.
+                Calls come one at a time, but perhaps from other threads.
+            cancel: stops the simulation within a frame or batch.
 
         Raises:
-            InputError: a grid does not validate; the message says where.
-            ComputationError: a grid validates, but its simulation failed; never a wrong result.
+            CancelledError: the token was set before all outcomes were there.
         """
         ...

@@ -1,10 +1,11 @@
-"""A result in a few numbers."""
+"""A result in a few numbers, and in words what qualifies it."""
 
 from typing import Any
 
 import numpy as np
 
 from simulearn.simulate.result import Result
+from simulearn.simulate.resultfile import qualities
 
 
 def summary(result: Result) -> dict[str, Any]:
@@ -17,8 +18,7 @@ def summary(result: Result) -> dict[str, Any]:
         moved_mm: the largest distance a joint centre moved, joint_moved: which joint.
         seconds: time the simulation took.
         iterations: iterations of the solver in all, where the engine counts them.
-        bound_mm: nine of ten such answers are off by less, the corners' mean in the last frame,
-            where the engine estimates its error.
+        stable, bound_mm, snaps, warnings, material, model: see `Result`.
     """
     flat, last = result.centres[0], result.centres[-1]
     rise, moved = last[:, 2] - flat[:, 2], np.linalg.norm(last - flat, axis=1)
@@ -37,6 +37,20 @@ def summary(result: Result) -> dict[str, Any]:
     iterations = result.record.get("iterations")
     if iterations is not None:
         numbers["iterations"] = int(np.sum(iterations))
-    if "bound_mm" in result.record:
-        numbers["bound_mm"] = float(result.record["bound_mm"])
-    return {k: round(v, 6) if isinstance(v, float) else v for k, v in numbers.items()}
+    rounded = {k: round(v, 6) if isinstance(v, float) else v for k, v in numbers.items()}
+    return rounded | qualities(result)
+
+
+def remarks(result: Result) -> list[str]:
+    """Return a sentence for each thing that qualifies a result and that no warning says."""
+    lines = []
+    if not result.stable:
+        lines.append("the shape is in unstable balance and may snap into another")
+    if all(message.code != "snap" for message in result.warnings):
+        lines += [
+            f"the grid snaps at {snap.released:.1%} released (frame {snap.frame})"
+            for snap in result.snaps
+        ]
+    if result.bound_mm is not None:
+        lines.append(f"nine of ten such answers are off by less than {result.bound_mm:.2f} mm")
+    return lines

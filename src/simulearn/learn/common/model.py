@@ -5,7 +5,7 @@ A kind of model is a class that has `kind`, `rollout`, `to_arrays`,
 `learned`, the conformance suite) knows only this.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any, NamedTuple, Protocol, runtime_checkable
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.material import Material, load_material
+from simulearn.schedule import Snap
 
 
 def standard() -> Material:
@@ -65,6 +66,11 @@ class Frames:
         stress: (T, 12, B, 4, 4, 6), or None where a model has none.
         bound_mm: (T,) estimate of the mean vertex error of the last frame, or None.
         converged: (T,) whether there is a prediction; a model without iterations always has one.
+        stable: (T,) whether the last frame is in stable equilibrium, or None where a model does not
+            know.
+        snaps: of each design its sudden motions, in their order, or None.
+        left_balance: (T,) whether an unstable equilibrium was left, so that the mirrored shape is
+            as likely, or None.
     """
 
     joints: NDArray[np.float64]
@@ -72,6 +78,9 @@ class Frames:
     stress: NDArray[np.float64] | None
     bound_mm: NDArray[np.float64] | None
     converged: NDArray[np.bool_]
+    stable: NDArray[np.bool_] | None = None
+    snaps: Sequence[tuple[Snap, ...]] | None = None
+    left_balance: NDArray[np.bool_] | None = None
 
 
 class Model(Protocol):

@@ -6,6 +6,7 @@ What they predict is a minimum of the energy of a grid of half-beams between joi
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,10 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs, Frames, Last
 from simulearn.learn.equilibrium.bound import ErrorBound
+from simulearn.learn.equilibrium.native import Networks, networks_of, predict
 from simulearn.learn.equilibrium.parameters import (
     Parameters,
+    Prediction,
     named_arrays,
     parameters_of,
     shapes_by_name,
@@ -24,6 +27,7 @@ from simulearn.material import Material
 
 BOUND = ("trust.weights", "trust.ranges", "trust.counts")  # names in the files of bundles
 CONVERGED = 0.1  # mm, the last motion of an iteration at most
+LARGE = 1000  # designs from which on a GPU is worth its compilation
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,27 +58,28 @@ class Equilibrium:
             None if prediction.stress is None else np.asarray(prediction.stress),
             bound,
             converged(prediction),
+            prediction.stable,
+            prediction.snaps,
+            prediction.left_balance,
         )
 
     def last(self, designs: Designs) -> Last:
         """Return the last frame; see `learn.common.model.last_frame`."""
         prediction = self.predict(designs, last=True)
-        joints, sections = (
-            np.asarray(prediction.joints)[:, 0],
-            np.asarray(prediction.sections)[:, 0],
-        )
-        done = converged(prediction)
-        if not done.all():  # frame by frame more converge
-            rollout = self.predict(designs.take(~done))
-            joints[~done], sections[~done] = rollout.joints[:, -1], rollout.sections[:, -1]
-            done[~done] = converged(rollout)
-        return Last(joints, sections, done)
+        joints, sections = prediction.joints[:, -1], prediction.sections[:, -1]
+        return Last(np.asarray(joints), np.asarray(sections), converged(prediction))
 
-    def predict(self, designs: Designs, last: bool = False) -> Any:
-        """Return the `prediction.Prediction` of all frames of each design, or of the last."""
-        from simulearn.learn.equilibrium.compiled import predict
+    def predict(self, designs: Designs, last: bool = False) -> Prediction:
+        """Return the prediction of all frames of each design, or of the last."""
+        if len(designs) >= LARGE and has_gpu():
+            from simulearn.learn.equilibrium.compiled import predict as on_gpu
 
-        return predict(self.parameters, self.material, designs, last)
+            return on_gpu(self.parameters, self.material, designs, last)
+        return predict(self.parameters, self.material, designs, last, networks=self._networks)
+
+    @cached_property
+    def _networks(self) -> Networks:
+        return networks_of(self.parameters, self.material)
 
     def config(self) -> dict[str, Any]:
         """Return the architecture."""
@@ -131,7 +136,17 @@ class Equilibrium:
 LARGEST = 4096  # width, message length or rounds of a network
 
 
-def converged(prediction: Any) -> NDArray[np.bool_]:
+@cache
+def has_gpu() -> bool:
+    """Return whether JAX computes on a GPU here."""
+    try:
+        import jax
+    except ImportError:
+        return False
+    return bool(jax.default_backend() == "gpu")
+
+
+def converged(prediction: Prediction) -> NDArray[np.bool_]:
     """Return which designs (T,) of a prediction have an equilibrium in every frame."""
     motion = np.asarray(prediction.motion)
     finite = [

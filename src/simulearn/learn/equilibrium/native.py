@@ -41,13 +41,12 @@ from simulearn.mechanics.path import (
     schedule_frames,
     trace,
 )
-from simulearn.schedule import FRAMES, Snap
+from simulearn.schedule import FRAMES
 
 Numbers = NDArray[np.float64]
 
 STOPS = np.array([0, 2, 4, 6, 8, 10, 11])  # frames on the way to the last alone
 PORTIONS = 8  # that each core's share of a batch is divided into, at least
-ASIDE = 4.0  # mm between first shape and last beyond which frame by frame is followed
 
 
 class Networks(NamedTuple):
@@ -81,9 +80,11 @@ def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) ->
         return np.ascontiguousarray(x, np.float32)
 
     (first, second), (third, last) = weights.encode, weights.decode
+    width = len(second[1])
+    own, other, around = np.split(stacked(1, 0), [width, 2 * width], axis=1)
     return Layers(
         *map(single, (*first, *second)),
-        stacked(0, 0), stacked(0, 1), stacked(1, 0), stacked(1, 1),
+        stacked(0, 0), stacked(0, 1), *map(single, (own, other, around)), stacked(1, 1),
         *map(single, (*third, *last)),
         single(VALUES_MIRROR),
         heads.mirror[0].astype(np.int64), single(heads.mirror[1]),
@@ -220,14 +221,14 @@ def _predict(
     out.sag[t] = np.linalg.norm(sag, axis=-1).mean()
     out.strain[t] = np.sqrt((first.twists[-1, ..., 3:] ** 2).sum(-1).mean())
     out.stable[t] = True
-    out.left_balance[t] = final.left_balance
+    out.left_balance[t] = first.left_balance or final.left_balance
     out.snaps[t] = tuple(final.snaps)
 
 
 def _last_corrected(
     grid: Grid, frames: Any, corrections: Numbers, first: Path, tolerance: float
 ) -> Path:
-    """Return the path whose last frame is in corrected equilibrium, near the first shape."""
+    """Return the path whose last frame is in corrected equilibrium, near the first shape's."""
     ends = np.array([0, len(frames.released) - 1])
     two = frames._replace(
         released=frames.released[ends],
@@ -244,8 +245,6 @@ def _last_corrected(
         jumped=np.zeros(2, np.bool_),
     )
     found = trace(grid, two, guide, small_steps=False, tolerance=tolerance)
-    away = np.linalg.norm(found.p[-1] - first.p[-1], axis=-1).max()
-    found.ended &= bool(away < ASIDE)
 
     def spread(x: Any, y: Any) -> Any:
         full = x.copy()
@@ -260,5 +259,3 @@ def _last_corrected(
         ended=found.ended,
     )
 
-
-__all__ = ["Networks", "Snap", "networks_of", "predict"]

@@ -39,8 +39,9 @@ SADDLE = 0.1  # mm, the motion below which an unstable equilibrium is accepted a
 STALE = 0.3  # mm, the motion after which factors do not tell the stability of a state
 
 DAMPING = 1e-3  # N/(mm mm3), at first in a descent
-GENTLE = 1e-7  # N/(mm mm3), below which steps are not damped any more
+GENTLE = 1e-12  # N/(mm mm3), below which steps are not damped any more
 HALTED = 1e3  # N/(mm mm3), beyond which a descent has failed
+LEAST = 1e-11  # N/(mm mm3), the first that is tried to make a stiffness positive
 SOFTEST = 12  # inverse iterations for the softest mode
 
 # What is done next with the wrenches of a state.
@@ -160,7 +161,8 @@ def solve(
     joints = len(layout.place)
     before = NEAR / 2 if near else inf
     negative, since, widest, count, cheap, failed, again = 0, inf, 0.0, 0, 0, 0, 0
-    damping, energy, share, slope = DAMPING, inf, 1.0, 0.0
+    damping, energy, share, slope = LEAST if shove > 0.0 else DAMPING, inf, 1.0, 0.0
+    blocked = 0.0  # resistance that was not enough, of late
     descending, downhill, known = descend, False, False
     doing = PUSH if shove > 0.0 else (FALL if descend else STEP)
     while True:
@@ -168,7 +170,7 @@ def solve(
         stiffness = EXACT if exact and not downhill else GAUSS_NEWTON
         if doing == AGAIN_STEP or doing == SHORTEN or doing == WEIGH:
             stiffness = NONE
-        c = damping if doing == FALL and damping > GENTLE else 0.0
+        c = damping if doing == PUSH or (doing == FALL and damping > GENTLE) else 0.0
         total, widest, pivots = evaluate(
             layout, weights, space.el, space.w, space.kept, R, p, space.force, space.blocks,
             stiffness, c,
@@ -183,12 +185,14 @@ def solve(
             break
         if doing == WEIGH:  # whether the energy has fallen
             if total <= energy + 1e-9 * (1.0 + abs(energy)):
-                if damping > GENTLE:
+                if damping / 4 > blocked:
                     damping /= 4
+                blocked /= 2
             else:
                 copy(space.start_R, R)
                 copy(space.start_p, p)
-                damping = max(4 * damping, 4 * GENTLE)
+                blocked = max(damping, GENTLE)
+                damping = 4 * blocked
             doing = FALL
             if count >= most or damping > HALTED:
                 before = inf
@@ -215,8 +219,15 @@ def solve(
                 downhill = True  # once more, with Gauss-Newton's stiffness
                 continue
         downhill = False
+        if doing == PUSH and pivots > 0:
+            damping *= 4
+            if damping > HALTED:
+                before = inf
+                break
+            continue
         if doing == FALL and pivots > 0:
-            damping = max(4 * damping, 4 * GENTLE)
+            blocked = max(damping, GENTLE)
+            damping = 4 * blocked
             if count >= most or damping > HALTED:
                 before = inf
                 break
@@ -239,10 +250,12 @@ def solve(
             far = longest(p, space.motion)
         if doing == PUSH:
             share = upwards(joints, p, space.motion) * shove / far
+            damping = DAMPING
             doing = FALL if descend else STEP
         elif doing == FALL:
             if not far <= LONGEST:
-                damping = max(4 * damping, 4 * GENTLE)
+                blocked = max(damping, GENTLE)
+                damping = 4 * blocked
                 if count >= most or damping > HALTED:
                     before = inf
                     break

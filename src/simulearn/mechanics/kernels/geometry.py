@@ -69,7 +69,10 @@ def set_plan(
             plan.corners[j, k, 2] = -thickness / 2 if k < 4 else thickness / 2
         c = plan.corners[j]
         plan.area[j] = (
-            abs((c[2, 0] - c[0, 0]) * (c[3, 1] - c[1, 1]) - (c[2, 1] - c[0, 1]) * (c[3, 0] - c[1, 0]))
+            abs(
+                (c[2, 0] - c[0, 0]) * (c[3, 1] - c[1, 1])
+                - (c[2, 1] - c[0, 1]) * (c[3, 0] - c[1, 0])
+            )
             / 2
         )
     for b in range(beams):

@@ -1,6 +1,6 @@
 """The frames of a grid by beam mechanics, each found from the ones before: the entry from Python."""
 
-from math import inf, isfinite, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -155,7 +155,7 @@ def follow(
     layout: Any, plan: Any, section: Array, load: Array, ratio: Array, frames: Any,
     guide_R: Array, guide_p: Array, guided: Array, begin: int, begun_near: bool, descend: bool,
     shove: float,
-    tolerance: float, most: int, far: Array, R: Array, p: Array, info: Array, twists: Array,
+    tolerance: Array, most: int, far: Array, R: Array, p: Array, info: Array, twists: Array,
 ) -> int:  # fmt: skip
     """Find the states of frames, each from the ones before, up to one that is not plain.
 
@@ -172,7 +172,7 @@ def follow(
         begun_near: whether the frame before is near the first.
         descend: whether to descend from the frame before.
         shove: how far to go along the softest mode first, mm.
-        tolerance: of the last motion, mm.
+        tolerance: (F,) of the last motion, mm.
         most: factorisations in a frame.
         far: (F,) distance from where a frame is expected that is not plain, mm.
         R, p: (F, N, 9), (F, N, 3) poses of joints and middles: frame 0 is given.
@@ -207,7 +207,7 @@ def follow(
         said = info[k]
         near = guided[k] or frames.order[k] > 0 or begun_near
         motion, negative, widest, count, cheap = solve(
-            layout, weights, space, R[k], p[k], tolerance, most, near, descend, shove,
+            layout, weights, space, R[k], p[k], tolerance[k], most, near, descend, shove,
             k == len(frames.released) - 1,
         )  # fmt: skip
         said[MOTION], said[NEGATIVE], said[WIDEST] = motion, negative, widest
@@ -217,10 +217,10 @@ def follow(
         if frames.corrected:  # twists are from the rest that the section model has
             set_elements(
                 space.el, space.rest, section, layout.ends, layout.fixed, plan.length, ratio,
-                plan.face, plan.frame, s, frames.corrections[k], False,
+                plan.face, plan.frame, s, frames.corrections[k], k < 0,
             )  # fmt: skip
         half_twists(layout, space.rest, plan, section, s, R[k], p[k], twists[k])
-        plain = motion <= tolerance and negative == 0
+        plain = motion <= tolerance[k] and negative == 0
         if not plain or not said[ASTRAY] <= far[k]:
             return k
     return len(frames.released)

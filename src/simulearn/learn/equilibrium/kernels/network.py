@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simulearn.learn.equilibrium.kernels.layers import STRIP, activate, affine
+from simulearn.learn.equilibrium.kernels.layers import activate, add_rows, product
 from simulearn.native import native
 
 Array = Any
@@ -25,7 +25,9 @@ class Layers(NamedTuple):
     Attributes:
         first, first_bias, second, second_bias: of the encoder.
         into, into_bias: (rounds, width, message) messages.
-        update, update_bias: (rounds, 2 width + 10 message, width).
+        own, other, around, update_bias: (rounds, width, width) twice, (rounds, 10 message, width),
+            (rounds, width): of an update, by what the half itself, its beam's other half, and the
+            halves around it say.
         third, third_bias, last, last_bias: of the decoder.
         mirror: (features,) signs of the features in a mirrored design.
         mirror_order, mirror_sign, flip_order, flip_sign: (outputs,).
@@ -40,7 +42,9 @@ class Layers(NamedTuple):
     second_bias: Array
     into: Array
     into_bias: Array
-    update: Array
+    own: Array
+    other: Array
+    around: Array
     update_bias: Array
     third: Array
     third_bias: Array
@@ -129,14 +133,12 @@ def set_waves(waves: Array, plan: Any, ratio: Array) -> None:
 
 @native(entry=False, fastmath={"contract"})
 def set_received(
-    inputs: Array, left: int, messages: Array, length: int, waves: Array, ends: Array,
-    total: Array,
-) -> None:  # fmt: skip
-    """Put the messages of the other halves at the same joint into the inputs of a round.
+    received: Array, messages: Array, length: int, waves: Array, ends: Array, total: Array
+) -> None:
+    """Find what the other halves at the same joint say.
 
     Args:
-        inputs: (4 B, more than left) to set from column `left` on.
-        left: where they begin.
+        received: (4 B, 2 WAVES length) to set.
         messages: (4 B, at least length).
         length: of a message.
         waves: (4 B, WAVES + 1) see `set_waves`.
@@ -160,7 +162,7 @@ def set_received(
     for i in range(4 * beams):
         side, b = i // beams, i % beams
         sums, wave, message = total[ends[side % 2, b] + joints * (side // 2)], waves[i], messages[i]
-        sign, row = wave[WAVES], inputs[i, left : left + 2 * WAVES * length]
+        sign, row = wave[WAVES], received[i]
         for part in range(2):
             factor = HALF if part == 0 else HALF * sign
             at = part * length
@@ -206,60 +208,72 @@ def outputs(
     count = layers.last.shape[1]
     x = np.zeros((rows, layers.first.shape[0]), np.float32)
     a, b = np.zeros((rows, width), np.float32), np.zeros((rows, width), np.float32)
-    inputs = np.zeros((rows, layers.update.shape[1]), np.float32)
+    c = np.zeros((rows, width), np.float32)
+    received = np.zeros((rows, 2 * WAVES * message), np.float32)
     messages = np.zeros((rows, message), np.float32)
     ends_of = np.zeros((rows, count), np.float32)
     waves = np.zeros((rows, WAVES + 1), np.float32)
     total = np.zeros((2 * len(valence), 2 * WAVES * message), np.float32)
-    sums = np.zeros(4 * STRIP, np.float32)
-    powers, scales = np.zeros(width, np.float32), np.zeros(width, np.float32)
+    powers, scales = np.zeros(width + message, np.float32), np.zeros(width + message, np.float32)
     bits = scales.view(np.int32)
-    powers_m, scales_m = np.zeros(message, np.float32), np.zeros(message, np.float32)
-    bits_m = scales_m.view(np.int32)
     set_waves(waves, plan, ratio)
     for f in range(begin, len(released)):
         set_features(
             x, layers, plan, ends, fixed, ratio, valence, R[f], twists[f], released[f],
             gravity[f], scale,
         )  # fmt: skip
-        layer, inner = 0, x.shape[1]
-        affine(x, inner, layers.first, layers.first_bias, a, sums)
-        activate(a, width, powers, bits, scales)
-        for layer in range(2 + 2 * len(layers.into)):
+        layered = 4 + 2 * len(layers.into)
+        for layer in range(layered):  # one place for each kernel: what is called is compiled in
+            r = layer // 2 - 1
+            ask = 2 <= layer < layered - 2 and layer % 2 == 0
+            update = 2 <= layer < layered - 2 and layer % 2 == 1
+            source, target, bias = b, c, layers.update_bias[0]
+            matrix = layers.second
             if layer == 0:
-                affine(a, width, layers.second, layers.second_bias, b, sums)
-                activate(b, width, powers, bits, scales)
-            elif layer == 1 + 2 * len(layers.into):
-                affine(b, width, layers.third, layers.third_bias, a, sums)
-                activate(a, width, powers, bits, scales)
-            elif layer % 2 == 1:
-                r = layer // 2
-                affine(b, width, layers.into[r], layers.into_bias[r], messages, sums)
-                activate(messages, message, powers_m, bits_m, scales_m)
+                source, target, matrix, bias = x, a, layers.first, layers.first_bias
+            elif layer == 1:
+                source, target, bias = a, b, layers.second_bias
+            elif layer == layered - 2:
+                target, matrix, bias = a, layers.third, layers.third_bias
+            elif layer == layered - 1:
+                source, target, matrix, bias = a, ends_of, layers.last, layers.last_bias
+            elif ask:
+                target, matrix, bias = messages, layers.into[r], layers.into_bias[r]
+            else:
+                matrix, bias = layers.own[r], layers.update_bias[r]
+            product(source, matrix, target)
+            if update:
+                product(b, layers.other[r], a)
                 for i in range(rows):
                     other = i + beams if (i // beams) % 2 == 0 else i - beams
                     for k in range(width):
-                        inputs[i, k] = b[i, k]
-                        inputs[i, width + k] = b[other, k]
-                set_received(inputs, 2 * width, messages, message, waves, ends, total)
-            else:
-                r = layer // 2 - 1
-                inner = inputs.shape[1]
-                affine(inputs, inner, layers.update[r], layers.update_bias[r], a, sums)
-                activate(a, width, powers, bits, scales)
+                        c[i, k] += a[other, k]
+                product(received, layers.around[r], a)
                 for i in range(rows):
                     for k in range(width):
-                        b[i, k] += a[i, k]
-        affine(a, width, layers.last, layers.last_bias, ends_of, sums)
+                        c[i, k] += a[i, k]
+            add_rows(target, bias)
+            if layer < layered - 1:
+                activate(target, target.shape[1], powers, bits, scales)
+            if ask:
+                set_received(received, messages, message, waves, ends, total)
+            if update:
+                for i in range(rows):
+                    for k in range(width):
+                        b[i, k] += c[i, k]
         both = np.zeros(count, np.float32)
         for end in range(2):
             for m in range(beams):
                 here, there = ends_of[end * beams + m], ends_of[(2 + end) * beams + m]
                 for k in range(count):
-                    both[k] = HALF * (here[k] + there[layers.mirror_order[k]] * layers.mirror_sign[k])
+                    both[k] = HALF * (
+                        here[k] + there[layers.mirror_order[k]] * layers.mirror_sign[k]
+                    )
                 target = out[f, end, m]
                 for k in range(count):
                     if ratio[m] < 0:
-                        target[k] = both[layers.flip_order[k]] * layers.flip_sign[k] * layers.size[k]
+                        target[k] = (
+                            both[layers.flip_order[k]] * layers.flip_sign[k] * layers.size[k]
+                        )
                     else:
                         target[k] = both[k] * layers.size[k]

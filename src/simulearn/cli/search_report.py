@@ -1,0 +1,225 @@
+"""Reports of searches and rankings: words, tables and pictures for people, figures for machines."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.markup import escape
+from rich.table import Table
+
+from simulearn.cli.base import err
+from simulearn.files import replacing
+from simulearn.grid import grid_to_dict
+from simulearn.simulate.summary import remarks
+
+if TYPE_CHECKING:
+    from simulearn.inverse import Ranking, SearchResult, Step, Suggestion, Task
+    from simulearn.inverse.search import Progress
+
+BARS = "▁▂▃▄▅▆▇█"
+
+
+def search_figures(task: "Task", result: "SearchResult") -> dict[str, Any]:
+    """Return what summary.json holds."""
+    check = result.check
+    return {
+        "method": task.method,
+        "engine": task.engine,
+        "error_mm": result.error_mm,
+        "error_fea_mm": check.error_fea_mm if check else None,
+        "why_no_fea": check.why if check and check.error_fea_mm is None else None,
+        "apart_mm": check.apart_mm if check else None,
+        "bound_mm": check.bound_mm if check else None,
+        "agrees": check.agrees if check else None,
+        "start_mm": result.steps[0].error_mm,
+        "designs": result.designs,
+        "iterations": result.iterations,
+        "corrections": result.steps[-1].phase,
+        "seconds": round(result.seconds, 3),
+        "interrupted": result.interrupted,
+        "warnings": [asdict(message) for message in result.warnings],
+        "goals": [
+            {"vertex": vertex, "distance_mm": distance}
+            for vertex, distance in _distances(task, result)
+        ],
+        "history": [step.row() for step in result.steps],
+    }
+
+
+def _distances(task: "Task", result: "SearchResult") -> list[tuple[str, float]]:
+    """Return how far each vertex is from its target, by finite elements where they answered."""
+    shape = None if result.check is None else result.check.shape
+    if shape is None:
+        return []
+    aims = task.aims
+    away = aims.distances(aims.points(shape.joints[-1], shape.beams[-1]))
+    return [(str(v), float(d)) for v, d in zip(aims.vertices, away, strict=True)]
+
+
+def search_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
+    """Yield what a person wants to know."""
+    yield (
+        f"{figures['start_mm']:.2f} mm to begin with, [bold]{result.error_mm:.2f} mm[/] by the "
+        f"engine {figures['engine']} after {result.iterations} iterations and {result.designs} "
+        f"designs, {result.seconds:.1f} s"
+    )
+    check = result.check
+    if check is None:
+        return
+    if check.error_fea_mm is None:
+        yield f"[yellow]finite elements have no answer:[/] {escape(check.why)}"
+        return
+    yield (
+        f"[bold]{check.error_fea_mm:.2f} mm[/] by finite elements; the two shapes are "
+        f"{check.apart_mm:.2f} mm apart"
+    )
+    if check.fea is not None:
+        yield from (escape(line) for line in remarks(check.fea))
+    if check.agrees is False:
+        yield (
+            f"[yellow]that is beyond the {check.bound_mm:.2f} mm of the engine's bound:[/] "
+            "trust finite elements, or go on with more --corrections"
+        )
+
+
+def search_pictures(
+    task: "Task", result: "SearchResult", folder: Path, model: str | None
+) -> list[str]:
+    """Draw the error curve, the shape beside its targets, and the design changing.
+
+    Returns:
+        The files that were written; a shape without an answer has no picture.
+    """
+    from simulearn.show.inverse import changing, error_curve, wanted
+    from simulearn.simulate import Result
+    from simulearn.simulate import engine as engine_of
+
+    check = result.check
+    names = ["error.png"]
+    with replacing(folder / "error.png") as temporary:
+        error_curve(result.steps, check.error_fea_mm if check else None).savefig(temporary)
+    # Every design by a slow engine would take as long as the search did.
+    quick = task.engine in ("learned", "beams")
+    simulator = engine_of(task.engine, model) if quick else engine_of("beams")
+    steps = _changes(result)
+    outcomes = simulator.simulate([step.grid(task.start) for step in steps])
+    shape = None if check is None else check.shape
+    if shape is None and isinstance(outcomes[-1], Result):
+        shape = outcomes[-1]
+    if shape is not None:
+        error = task.aims.error(task.aims.points(shape.joints[-1], shape.beams[-1]))
+        with replacing(folder / "shape.png") as temporary:
+            wanted(shape, task.aims, float(error)).savefig(temporary)
+        names.append("shape.png")
+    pairs = [(r, step) for r, step in zip(outcomes, steps, strict=True) if isinstance(r, Result)]
+    if pairs:
+        results, drawn = zip(*pairs, strict=True)
+        changing(results, drawn, task.aims, folder / "changing.gif")
+        names.append("changing.gif")
+    return names
+
+
+def _changes(result: "SearchResult", most: int = 40) -> "list[Step]":
+    """Return the steps at which the best design changed, at most so many, the last one always."""
+    kept: list[Step] = []
+    for step in result.steps:
+        if not kept or (step.joints, step.actuators) != (kept[-1].joints, kept[-1].actuators):
+            kept.append(step)
+    final = replace(
+        kept[-1],
+        joints=result.grid.joints.tolist(),
+        actuators=result.grid.actuators.tolist(),
+        error_mm=result.error_mm,
+    )
+    stride = max(1, -(-len(kept) // most))
+    return [*kept[:-1][::stride], final]
+
+
+def ranking_figures(ranking: "Ranking", engine: str) -> dict[str, Any]:
+    """Return a ranking for machines."""
+    return {
+        "engine": engine,
+        "error_mm": ranking.error_mm,
+        "modifications": [_modification(one) for one in ranking.suggestions],
+        "suggestions": [
+            {**_modification(one), "grid": grid_to_dict(one.grid)} for one in ranking.best
+        ],
+    }
+
+
+def _modification(one: "Suggestion") -> dict[str, Any]:
+    return {
+        "change": one.change.words,
+        "part": one.change.part,
+        "indices": list(one.change.indices),
+        "error_mm": one.error_mm,
+        "moved_mm": one.moved_mm,
+    }
+
+
+def ranking_table(ranking: "Ranking", goals: bool) -> Table:
+    """Return the suggestions; to tenths of a mm, since engines are not sure of hundredths."""
+    count = len(ranking.suggestions)
+    shown = "five that differ" if count > len(ranking.best) else "the best first"
+    title = f"{ranking.error_mm:.1f} mm as it is; " if goals else ""
+    table = Table(
+        box=None,
+        title=f"{title}{count} valid modifications, {shown}",
+        title_justify="left",
+    )
+    table.add_column("", justify="right")
+    table.add_column("change")
+    if goals:
+        table.add_column("error, mm", justify="right")
+        table.add_column("gain", justify="right")
+    table.add_column("moves, mm", justify="right")
+    for k, one in enumerate(ranking.best, 1):
+        gain = ranking.error_mm - one.error_mm
+        errors = [f"{one.error_mm:.1f}", f"{gain:+.1f}"] if goals else []
+        table.add_row(str(k), one.change.words, *errors, f"{one.moved_mm:.1f}")
+    return table
+
+
+@contextmanager
+def live(quiet: bool) -> "Iterator[Progress]":
+    """Yield a function that shows a step: a line that changes on a terminal, else one for each."""
+    if quiet:
+        yield _nothing
+        return
+    if not err.is_terminal:
+        yield _line
+        return
+    errors: list[float] = []
+    with err.status("getting ready") as status:
+
+        def show(step: "Step") -> None:
+            errors.append(step.error_mm)
+            status.update(f"{_bars(errors)} {_progress(step)}  [dim]{escape(step.words)}[/]")
+
+        yield show
+        sys.stderr.flush()
+
+
+def _nothing(step: "Step") -> None:
+    pass
+
+
+def _line(step: "Step") -> None:
+    err.print(f"{step.iteration}: {_progress(step)}, {escape(step.words)}")
+
+
+def _progress(step: "Step") -> str:
+    corrected = f", correction {step.phase}" if step.phase else ""
+    return (
+        f"{step.error_mm:.2f} mm, {step.designs} designs, iteration {step.iteration}{corrected}, "
+        f"{step.seconds:.0f} s"
+    )
+
+
+def _bars(errors: list[float], width: int = 24) -> str:
+    """Return the last errors as a row of bars."""
+    most = max(errors)
+    return "".join(BARS[min(7, int(8 * e / max(most, 1e-9)))] for e in errors[-width:])
