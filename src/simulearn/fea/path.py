@@ -34,6 +34,7 @@ class Path:
         last: up to three states on the same smooth path.
         halved: increments that had to be halved.
         snaps: sudden motions, in their order.
+        motions: how far some part moved in each of them, mm.
         messages: what qualifies the states.
     """
 
@@ -42,6 +43,7 @@ class Path:
         self.last = list(states) or [problem.flat()]
         self.halved = 0
         self.snaps: list[Snap] = []
+        self.motions: list[float] = []
         self.messages: list[Message] = []
 
     def restart(self) -> None:
@@ -114,10 +116,14 @@ class Path:
             )
         elif motion > FAR * self.problem.size:
             self.snaps.append(Snap(before.released, frame))
+            self.motions.append(motion)
+            when = f"at {100 * before.released:.1f} % of the stress released"
+            if s == before.released:
+                when = f"while it creeps, as under {before.gravity:.2f} times gravity"
             self._say(
                 "snap",
-                f"the grid snaps at {100 * before.released:.1f} % of the stress released (frame "
-                f"{frame}): some part of it moves by {motion:.0f} mm at once",
+                f"the grid snaps {when} (frame {frame}): some part of it moves by {motion:.0f} mm "
+                "at once",
             )
 
     def _leave(self, balance: SolidState, frame: int) -> None:
