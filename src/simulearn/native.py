@@ -34,7 +34,9 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
-        compile_ = numba.njit(nogil=True, error_model="numpy", **options)(function)
+        # Wrappers for callers that a kernel does not have would only take time to compile.
+        wrappers = {"no_cfunc_wrapper": True, "no_cpython_wrapper": not entry}
+        compile_ = numba.njit(nogil=True, error_model="numpy", **wrappers, **options)(function)
         kept_in = _folder(Path(function.__code__.co_filename).parent) if entry else None
         if kept_in is not None:
             with _decorating:  # Numba asks a setting of the whole process for the folder
