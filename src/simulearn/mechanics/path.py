@@ -1,7 +1,7 @@
 """The frames of a grid by native beam mechanics, through snaps where there are any.
 
-Frame after frame is found by `kernels.path.follow`. Where one is not plain (no equilibrium is near,
-it is unstable, or far from where the path leads) it is followed in small steps from the frame
+Frame after frame is solved by `kernels.path.follow`. Where one is not plain (no equilibrium is
+near, it is unstable, or far from where the path leads) it is followed in small steps from the frame
 before. Where a small step finds no stable equilibrium near, the grid descends to the next one under
 the same load, as it would in the viscous bath: a snap. An unstable equilibrium is left along its
 softest mode.
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from simulearn.material import Material
 from simulearn.mechanics.kernels.assembly import Layout
-from simulearn.mechanics.kernels.geometry import Plan, set_plan
+from simulearn.mechanics.kernels.geometry import Geometry, set_geometry
 from simulearn.mechanics.kernels.path import (
     ASTRAY,
     INFO,
@@ -40,7 +40,7 @@ DESCENT = 600  # the same in a descent
 # Shares of the grid's dimension
 EXPECTED = 0.04  # from where the path leads, beyond which a frame is followed in small steps
 JUMP = 0.13  # the same where the path does not lead on: at first, and where gravity changes
-WIDER = 2.5  # times as much where only some of the frames are found
+WIDER = 2.5  # times as much where only some of the frames are reached
 SMALLEST = 1 / 32  # of a frame, the smallest step
 ALLOWED = 1.0  # mm that a small step may move more than twice what the step before did
 SNAP = 0.03  # of the grid's dimension: the least motion that is a snap
@@ -53,7 +53,7 @@ class Grid(NamedTuple):
 
     Attributes:
         layout: its topology.
-        plan: the flat grid in numbers.
+        geometry: the flat grid in numbers.
         side: (2, B) side of its joint that each half leaves.
         ratio: (B,) signed actuator ratios.
         section: coefficients of the section model.
@@ -61,21 +61,21 @@ class Grid(NamedTuple):
     """
 
     layout: Layout
-    plan: Plan
+    geometry: Geometry
     side: Indices
     ratio: Numbers
     section: Numbers
     load: Numbers
 
     @property
-    def count(self) -> int:
+    def nodes(self) -> int:
         """Number of joints and middles."""
-        return len(self.plan.area) + len(self.ratio)
+        return len(self.geometry.area) + len(self.ratio)
 
     @property
     def dimension(self) -> float:
         """Largest distance of a joint from the fixed one, mm."""
-        away = self.plan.centre - self.plan.centre[self.layout.fixed]
+        away = self.geometry.centre - self.geometry.centre[self.layout.fixed]
         return float(np.linalg.norm(away, axis=1).max())
 
 
@@ -146,18 +146,18 @@ def grid_of(
     """
     layout = layout_of(beams, fixed, len(joints))
     count, many = len(joints), len(beams)
-    plan = Plan(
+    geometry = Geometry(
         np.zeros((count, 3)), np.zeros((count, 8, 3)), np.zeros(count), np.zeros((2, many, 3)),
         np.zeros((2, many, 9)), np.zeros((2, many)), np.zeros((2, many)), np.zeros(many),
         np.zeros((many, 3)), np.zeros((many, 4, 3)),
     )  # fmt: skip
     own = [np.ascontiguousarray(x, np.int64) for x in corners]
-    set_plan(
-        plan, np.ascontiguousarray(joints, np.float64), layout.ends, *own,
+    set_geometry(
+        geometry, np.ascontiguousarray(joints, np.float64), layout.ends, *own,
         material.section.width, material.section.thickness,
     )  # fmt: skip
     ratio = np.ascontiguousarray(ratio, np.float64)
-    return Grid(layout, plan, own[4], ratio, section, load_of(material))
+    return Grid(layout, geometry, own[4], ratio, section, load_of(material))
 
 
 def schedule_frames(
@@ -198,7 +198,7 @@ def trace(
             ends there.
         tolerance: of the last motion of an iteration, mm.
     """
-    count, nodes, joints = len(frames.released), grid.count, len(grid.plan.area)
+    count, nodes, joints = len(frames.released), grid.nodes, len(grid.geometry.area)
     path = Path(
         np.empty((count, nodes, 9)),
         np.empty((count, nodes, 3)),
@@ -208,8 +208,8 @@ def trace(
         jumped=np.zeros(count, np.bool_),
     )
     path.R[0, :joints] = np.eye(3).ravel()
-    path.R[0, joints:] = grid.plan.frame[0]
-    path.p[0, :joints], path.p[0, joints:] = grid.plan.centre, grid.plan.middle
+    path.R[0, joints:] = grid.geometry.frame[0]
+    path.p[0, :joints], path.p[0, joints:] = grid.geometry.centre, grid.geometry.middle
     order = frames.order.copy()
     guided = np.zeros(count, np.bool_)
     if guide is not None:
@@ -229,7 +229,7 @@ def trace(
         if not small_steps or not _small_steps(grid, frames, k, path, tolerance):
             path.ended = False
             break
-        if path.jumped[k]:  # the path before tells nothing of what follows
+        if path.jumped[k]:  # what follows does not continue the path before
             order[k + 1 : k + 4] = np.minimum(order[k + 1 : k + 4], [0, 1, 2][: count - k - 1])
             guided[k + 1 : k + 3] = False
             far[k + 1 : k + 2] = JUMP * grid.dimension
@@ -258,7 +258,7 @@ def _follow(
     tolerances[-1] = tolerance
     return int(
         follow(
-            grid.layout, grid.plan, grid.section, grid.load, grid.ratio, frames,
+            grid.layout, grid.geometry, grid.section, grid.load, grid.ratio, frames,
             along.R, along.p, guided, begin, near, descend, shove, tolerances,
             DESCENT if descend else MOST, far, path.R, path.p, path.info, path.twists,
         )
@@ -290,10 +290,10 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
             )
             return done == 2
 
-        found = find()
+        reached = find()
         moved = float(short.info[1, MOVED])
         allowed = ALLOWED + 2 * rate * (to - at)
-        if not found or not moved <= allowed:
+        if not reached or not moved <= allowed:
             if step > SMALLEST:
                 step /= 2
                 continue

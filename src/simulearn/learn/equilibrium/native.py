@@ -82,7 +82,7 @@ def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) ->
     (first, second), (third, last) = weights.encode, weights.decode
     width = len(second[1])
     own, other, around = np.split(stacked(1, 0), [width, 2 * width], axis=1)
-    return Layers(
+    arrays: list[Any] = [
         *map(single, (*first, *second)),
         stacked(0, 0), stacked(0, 1), *map(single, (own, other, around)), stacked(1, 1),
         *map(single, (*third, *last)),
@@ -92,7 +92,8 @@ def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) ->
         np.asarray(heads.size * factor, np.float64),
         TWIST_SIZE * np.where(np.arange(6) < 3, scale, 1.0),
         np.asarray(TWIST_FLIP, np.float64),
-    )  # fmt: skip
+    ]  # fmt: skip
+    return Layers(*arrays)
 
 
 def predict(
@@ -115,17 +116,8 @@ def predict(
     """
     networks = networks or networks_of(parameters, material)
     count, joints, beams = len(designs), designs.flat.shape[1], len(designs.beams)
-    frames = 1 if last else FRAMES
-    stress = None if last or networks.stress is None else np.empty((count, frames, beams, 4, 4, 6))
-    out = Prediction(
-        np.empty((count, frames, joints, 8, 3)),
-        np.empty((count, frames, beams, 3, 4, 3)),
-        stress,
-        *np.full((4, count), np.inf),
-        stable=np.zeros(count, np.bool_),
-        left_balance=np.zeros(count, np.bool_),
-        snaps=[() for _ in range(count)],
-    )
+    stress = networks.stress is not None and not last
+    out = _blank(count, 1 if last else FRAMES, joints, beams, stress)
     corners = corner_topology(designs.beams, designs.flat)
 
     def run(some: range) -> None:
@@ -148,6 +140,22 @@ def predict(
     return out
 
 
+def _blank(count: int, frames: int, joints: int, beams: int, stress: bool) -> Prediction:
+    """Return the prediction of designs none of which has an equilibrium yet."""
+    return Prediction(
+        np.full((count, frames, joints, 8, 3), np.nan),
+        np.full((count, frames, beams, 3, 4, 3), np.nan),
+        np.full((count, frames, beams, 4, 4, 6), np.nan) if stress else None,
+        motion=np.full(count, np.inf),
+        apart=np.full(count, np.inf),
+        sag=np.full(count, np.inf),
+        strain=np.full(count, np.inf),
+        stable=np.zeros(count, np.bool_),
+        left_balance=np.zeros(count, np.bool_),
+        snaps=[() for _ in range(count)],
+    )
+
+
 def _predict(
     networks: Networks,
     material: Material,
@@ -164,12 +172,12 @@ def _predict(
     first = trace(grid, frames, small_steps=not last, tolerance=tolerance)
     final, warping = first, np.zeros((len(frames.released), 2, beams, 24))
     begin = len(frames.released) - 1 if last else 1
-    valence = np.bincount(grid.layout.ends.ravel(), minlength=len(grid.plan.area)).astype(float)
+    valence = np.bincount(grid.layout.ends.ravel(), minlength=len(grid.geometry.area)).astype(float)
 
     def output(layers: Layers, path: Path, begin: int) -> Numbers:
         values = np.zeros((len(frames.released), 2, beams, len(layers.size)))
         outputs(
-            layers, grid.plan, grid.layout.ends, grid.layout.fixed, grid.ratio, valence, path.R,
+            layers, grid.geometry, grid.layout.ends, grid.layout.fixed, grid.ratio, valence, path.R,
             path.twists, frames.released, frames.gravity, networks.scale, begin, values,
         )  # fmt: skip
         return values
@@ -184,36 +192,28 @@ def _predict(
             corrected = frames._replace(corrections=corrections, corrected=True)
             final = trace(grid, corrected, first, tolerance=tolerance)
     if last and not (first.ended and final.ended):  # frame by frame more converge
-        whole = Prediction(
-            np.empty((1, FRAMES, *out.joints.shape[2:])),
-            np.empty((1, FRAMES, *out.sections.shape[2:])),
-            None, *np.full((4, 1), np.inf), stable=np.zeros(1, np.bool_),
-            left_balance=np.zeros(1, np.bool_), snaps=[()],
-        )  # fmt: skip
-        _predict(networks, material, grid, False, tolerance, whole, 0)
-        for to, value in zip(out, whole, strict=True):
+        rollout = _blank(1, FRAMES, len(grid.geometry.area), beams, False)
+        _predict(networks, material, grid, False, tolerance, rollout, 0)
+        for to, value in zip(out, rollout, strict=True):
             if value is not None:
                 to[t] = value[0][-1:] if np.ndim(value[0]) > 1 else value[0]
         return
     joints = np.empty((len(frames.released), *out.joints.shape[2:]))
     sections = np.empty((len(frames.released), *out.sections.shape[2:]))
     if not (first.ended and final.ended):
-        out.joints[t], out.sections[t] = np.nan, np.nan
-        if out.stress is not None:
-            out.stress[t] = np.nan
         return
     set_corners(
-        grid.plan, grid.section, grid.layout.ends, grid.layout.fixed, grid.side, frames.released,
-        warping, final.R, final.p, begin if last else 0, joints, sections,
+        grid.geometry, grid.section, grid.layout.ends, grid.layout.fixed, grid.side,
+        frames.released, warping, final.R, final.p, begin if last else 0, joints, sections,
     )  # fmt: skip
     out.joints[t], out.sections[t] = (x[-1:] if last else x for x in (joints, sections))
     if out.stress is not None and networks.stress is not None:
         shrinkage = material.shrinkage
         stress_in_space(
-            output(networks.stress, final, 1), grid.plan, grid.layout.ends, grid.ratio, final.R,
+            output(networks.stress, final, 1), grid.geometry, grid.layout.ends, grid.ratio, final.R,
             frames.released, shrinkage.stress_active, shrinkage.stress_passive, 0, out.stress[t],
         )  # fmt: skip
-    many = len(grid.plan.area)
+    many = len(grid.geometry.area)
     apart = final.p[-1, :many] - first.p[-1, :many]
     sag = first.p[-1, :many] - first.p[-2, :many]
     out.motion[t] = max(first.motion, final.motion)
@@ -244,7 +244,7 @@ def _last_corrected(
         first.twists[ends],
         jumped=np.zeros(2, np.bool_),
     )
-    found = trace(grid, two, guide, small_steps=False, tolerance=tolerance)
+    short = trace(grid, two, guide, small_steps=False, tolerance=tolerance)
 
     def spread(x: Any, y: Any) -> Any:
         full = x.copy()
@@ -252,9 +252,9 @@ def _last_corrected(
         return full
 
     return Path(
-        spread(first.R, found.R),
-        spread(first.p, found.p),
-        spread(first.info, found.info),
-        spread(first.twists, found.twists),
-        ended=found.ended,
+        spread(first.R, short.R),
+        spread(first.p, short.p),
+        spread(first.info, short.info),
+        spread(first.twists, short.twists),
+        ended=short.ended,
     )

@@ -102,7 +102,7 @@ GYRATION = 25.0  # mm2, of what turns with a body
 
 @native(entry=False)
 def evaluate(
-    layout: Layout, weights: Weights, el: Array, w: Array, kept: Array, R: Array, p: Array,
+    layout: Layout, weights: Weights, half_beams: Array, w: Array, kept: Array, R: Array, p: Array,
     force: Array, blocks: Array, stiffness: int, damping: float,
 ) -> Any:  # fmt: skip
     """Find the wrenches out of balance in a state; with a stiffness, also assemble that.
@@ -110,10 +110,11 @@ def evaluate(
     Args:
         layout: topology.
         weights: loads.
-        el: (chunks, 2, ELEMENT, WIDE) elements.
+        half_beams: (chunks, 2, HALF_BEAM, WIDE) elements.
         w: (ROWS, WIDE) workspace.
         kept: (chunks, KEPT, WIDE) what steps need.
-        R, p: (J + B, 9), (J + B, 3) poses of joints, then middles.
+        R: (J + B, 9) rotations of joints, then middles.
+        p: (J + B, 3) mm, their places.
         force: (J, 6) to set: on joints.
         blocks: (blocks, 36) to set: stiffness of the free joints.
         stiffness: which.
@@ -124,7 +125,6 @@ def evaluate(
     """
     ends, place = layout.ends, layout.place
     joints, beams = len(place), ends.shape[1]
-    free = len(layout.columns) - 1
     total, widest, negative = 0.0, 0.0, 0
     for j in range(joints):
         for k in range(6):
@@ -133,10 +133,10 @@ def evaluate(
         for i in range(len(blocks)):
             for k in range(36):
                 blocks[i, k] = 0.0
-    for chunk in range(len(el)):
+    for chunk in range(len(half_beams)):
         first = chunk * LANES
         lanes = min(LANES, beams - first)
-        own, keep = el[chunk], kept[chunk]
+        own, keep = half_beams[chunk], kept[chunk]
         for end in range(2):
             gather(w, R, p, ends[end], first, end, joints)
             widest = max(widest, twist(w, own[end], FIRST, lanes))

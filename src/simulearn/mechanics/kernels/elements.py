@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from simulearn.mechanics.kernels.halves import AT_REST, ELEMENT, KAA, KAB, KBB, REST
+from simulearn.mechanics.kernels.halves import AT_REST, HALF_BEAM, KAA, KAB, KBB, REST
 from simulearn.mechanics.kernels.lanes import LANES
 from simulearn.mechanics.kernels.rotations import exponential, matrix_product
 from simulearn.native import native
@@ -35,15 +35,15 @@ def arc(length: float, angle: float) -> Any:
 
 
 @native(entry=False)
-def set_elements(
-    el: Array, rest: Array, section: Array, ends: Array, fixed: int, length: Array, ratio: Array,
-    face: Array, frame: Array, s: float, corrections: Array, corrected: bool,
+def set_half_beams(
+    half_beams: Array, rest: Array, section: Array, ends: Array, fixed: int, length: Array,
+    ratio: Array, face: Array, frame: Array, s: float, corrections: Array, corrected: bool,
 ) -> None:  # fmt: skip
     """Set the elements of all half-beams.
 
     Args:
-        el: (chunks, 2, ELEMENT, WIDE) to set.
-        rest: (2, B, 12) to set: rotation and position of the middle as seen from the face.
+        half_beams: (chunks, 2, HALF_BEAM, WIDE) to set.
+        rest: (2, B, 12) to set: rotation and position of the middle in the axes of the face.
         section: coefficients of the fitted section.
         ends: (2, B) joint of each half.
         fixed: the fixed joint.
@@ -152,7 +152,7 @@ def set_elements(
             for k in range(9):
                 pose[k] = own[k]
             pose[9], pose[10], pose[11] = px, py, pz
-            axes, row, lane = frame[end, beam], el[beam // LANES, end], beam % LANES
+            axes, row, lane = frame[end, beam], half_beams[beam // LANES, end], beam % LANES
             matrix_product(axes, own, turned)
             for k in range(9):
                 row[REST, LANES * k + lane] = turned[k]
@@ -164,10 +164,10 @@ def set_elements(
                     row[KAA, at] = stiff[k, m] * factor[k] * factor[m]
                     row[KAB, at] = stiff[k, over] * factor[k] * factor[over]
                     row[KBB, at] = stiff[3 + k, over] * factor[3 + k] * factor[over]
-    for beam in range(beams, LANES * len(el)):  # lanes without a beam repeat the last
+    for beam in range(beams, LANES * len(half_beams)):  # lanes without a beam repeat the last
         for end in range(2):
-            for k in range(ELEMENT):
+            for k in range(HALF_BEAM):
                 for m in range(9):
-                    el[beam // LANES, end, k, LANES * m + beam % LANES] = el[
+                    half_beams[beam // LANES, end, k, LANES * m + beam % LANES] = half_beams[
                         (beams - 1) // LANES, end, k, LANES * m + (beams - 1) % LANES
                     ]

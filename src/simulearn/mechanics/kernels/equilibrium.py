@@ -2,7 +2,7 @@
 
 Far from equilibrium steps are Gauss-Newton's, which go downhill; near it the stiffness is exact.
 Old factors are used again where they do. All is one kernel with one place where wrenches are
-found: what a kernel calls is compiled into it, so that several would cost several times as much.
+reached: what a kernel calls is compiled into it, so that several would cost several times as much.
 """
 
 from math import inf, isfinite
@@ -21,7 +21,7 @@ from simulearn.mechanics.kernels.assembly import (
     evaluate,
     expand,
 )
-from simulearn.mechanics.kernels.halves import ELEMENT
+from simulearn.mechanics.kernels.halves import HALF_BEAM
 from simulearn.mechanics.kernels.joints import factorise, substitute
 from simulearn.mechanics.kernels.lanes import LANES, WIDE
 from simulearn.mechanics.kernels.rotations import copy, move
@@ -36,7 +36,7 @@ AGAIN = 6  # steps with the same factors, at most
 FREE = 8  # steps that may lead uphill: bending at first stretches
 SLOW = 0.3  # of the step before; where a step is longer, new factors are needed
 SADDLE = 0.1  # mm, the motion below which an unstable equilibrium is accepted as one
-STALE = 0.3  # mm, the motion after which factors do not tell the stability of a state
+STALE = 0.3  # mm, the motion after which factors do not show whether a state is stable
 
 DAMPING = 1e-3  # N/(mm mm3), at first in a descent
 GENTLE = 1e-12  # N/(mm mm3), below which steps are not damped any more
@@ -53,15 +53,15 @@ class Space(NamedTuple):
 
     w: Array
     kept: Array
-    el: Array
+    half_beams: Array
     rest: Array
     force: Array
     blocks: Array
     scratch: Array
     right: Array
     motion: Array
-    start_R: Array
-    start_p: Array
+    start_rotations: Array
+    start_places: Array
 
 
 @native(entry=False)
@@ -71,7 +71,7 @@ def make_space(joints: int, beams: int, free: int, blocks: int, deepest: int) ->
     return Space(
         np.zeros((ROWS, WIDE)),
         np.zeros((chunks, KEPT, WIDE)),
-        np.zeros((chunks, 2, ELEMENT, WIDE)),
+        np.zeros((chunks, 2, HALF_BEAM, WIDE)),
         np.zeros((2, beams, 12)),
         np.zeros((joints, 6)),
         np.zeros((blocks, 36)),
@@ -146,7 +146,8 @@ def solve(
         layout: topology.
         weights: loads.
         space: workspace, its elements set.
-        R, p: poses.
+        R: rotations.
+        p: places, mm.
         tolerance: of the last motion, mm.
         most: factorisations at most.
         near: whether the poses are near equilibrium.
@@ -166,13 +167,13 @@ def solve(
     descending, downhill, known = descend, False, False
     doing = PUSH if shove > 0.0 else (FALL if descend else STEP)
     while True:
-        exact = doing == PUSH or doing == FALL or doing == JUDGE or before < NEAR
+        exact = doing in (PUSH, FALL, JUDGE) or before < NEAR
         stiffness = EXACT if exact and not downhill else GAUSS_NEWTON
-        if doing == AGAIN_STEP or doing == SHORTEN or doing == WEIGH:
+        if doing in (AGAIN_STEP, SHORTEN, WEIGH):
             stiffness = NONE
         c = damping if doing == PUSH or (doing == FALL and damping > GENTLE) else 0.0
         total, widest, pivots = evaluate(
-            layout, weights, space.el, space.w, space.kept, R, p, space.force, space.blocks,
+            layout, weights, space.half_beams, space.w, space.kept, R, p, space.force, space.blocks,
             stiffness, c,
         )  # fmt: skip
         if stiffness != NONE:
@@ -189,8 +190,8 @@ def solve(
                     damping /= 4
                 blocked /= 2
             else:
-                copy(space.start_R, R)
-                copy(space.start_p, p)
+                copy(space.start_rotations, R)
+                copy(space.start_places, p)
                 blocked = max(damping, GENTLE)
                 damping = 4 * blocked
             doing = FALL
@@ -202,8 +203,8 @@ def solve(
             beyond = power(layout, space) * share
             part = 0.0
             if beyond > -slope / 4:
-                copy(space.start_R, R)
-                copy(space.start_p, p)
+                copy(space.start_rotations, R)
+                copy(space.start_places, p)
                 part = share * slope / (slope - beyond)
             for i in range(len(p)):
                 move(R, p, i, space.motion[i], part)
@@ -214,10 +215,9 @@ def solve(
             continue
         if doing == STEP:
             negative, known = pivots, stiffness == EXACT
-        if doing == STEP and stiffness == EXACT:
-            if pivots > 0 and before > SADDLE:
-                downhill = True  # once more, with Gauss-Newton's stiffness
-                continue
+        if doing == STEP and stiffness == EXACT and pivots > 0 and before > SADDLE:
+            downhill = True  # once more, with Gauss-Newton's stiffness
+            continue
         downhill = False
         if doing == PUSH and pivots > 0:
             damping *= 4
@@ -261,8 +261,8 @@ def solve(
                     break
                 continue
             share, energy = 1.0, total
-            copy(R, space.start_R)
-            copy(p, space.start_p)
+            copy(R, space.start_rotations)
+            copy(p, space.start_places)
             if c == 0.0 and far < CLOSE / 10:  # the rest by plain steps
                 descending, doing, before = False, STEP, far
             else:
@@ -281,8 +281,8 @@ def solve(
                 again = 0
                 if count > FREE and far > CLOSE:
                     slope = power(layout, space) * share
-                    copy(R, space.start_R)
-                    copy(p, space.start_p)
+                    copy(R, space.start_rotations)
+                    copy(p, space.start_places)
                     doing = SHORTEN
                 elif far <= CLOSE:
                     doing = AGAIN_STEP
@@ -295,7 +295,7 @@ def solve(
             before = far
         for i in range(len(p)):
             move(R, p, i, space.motion[i], share)
-        if (doing == STEP or doing == AGAIN_STEP) and not descending:
+        if doing in (STEP, AGAIN_STEP) and not descending:
             if before <= tolerance:
                 if known and not judge and since < STALE:
                     break

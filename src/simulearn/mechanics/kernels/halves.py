@@ -46,7 +46,7 @@ KT, KL, KB, KC = np.arange(14, 18)
 N, Z, X, Y = np.arange(18, 22)
 SAA, SAB, SBB = np.arange(22, 28, 2)  # stiffness, of both ends
 # Rows of an element (of one end of sixteen beams)
-REST, AT_REST, KAA, KAB, KBB, ELEMENT = np.arange(6)
+REST, AT_REST, KAA, KAB, KBB, HALF_BEAM = np.arange(6)
 # Where a vector begins in a row
 FIRST, SECOND, THIRD = np.arange(0, 9, 3)
 
@@ -76,20 +76,20 @@ def gather(w: Array, R: Array, p: Array, joint: Array, first: int, end: int, joi
 
 
 @native(entry=False, fastmath=FAST)
-def twist(w: Array, el: Array, row: int, lanes: int) -> float:
+def twist(w: Array, half_beams: Array, row: int, lanes: int) -> float:
     """Find how far middles have left their places at rest, and the coefficients there.
 
     Returns:
         The largest square of an angle.
     """
-    product(w, JOINT, el, row + REST, w, TURN)
+    product(w, JOINT, half_beams, row + REST, w, TURN)
     x, at, mid, v = w[SCALARS], w[AT_JOINT], w[AT_MIDDLE], w[VECTORS]
     for n in range(3 * LANES):
         x[n] = mid[n] - at[n]
     for n in range(WIDE):
         v[n] = 0.0
         w[RELATIVE, n] = 0.0
-    add_applied(w, JOINT, el, row + AT_REST, FIRST, -1.0, w, SCALARS, FIRST)
+    add_applied(w, JOINT, half_beams, row + AT_REST, FIRST, -1.0, w, SCALARS, FIRST)
     add_applied_t(w, TURN, w, SCALARS, FIRST, 1.0, w, VECTORS, FIRST)
     add_product_t(w, TURN, w, MIDDLE, 1.0, w, RELATIVE)
     most, r = 0.0, w[RELATIVE]
@@ -114,7 +114,7 @@ def twist(w: Array, el: Array, row: int, lanes: int) -> float:
 
 
 @native(entry=False, fastmath=FAST)
-def pull(w: Array, el: Array, row: int, end: int) -> None:
+def pull(w: Array, half_beams: Array, row: int, end: int) -> None:
     """Find wrenches on middles from twists, and how twists change as middles move."""
     v, x, j, d = w[VECTORS], w[SCALARS], w[J], w[D]
     for n in range(LANES):
@@ -161,10 +161,10 @@ def pull(w: Array, el: Array, row: int, end: int) -> None:
         v[n] = 0.0
     clear(w, X)
     clear(w, WRENCH + end)
-    add_applied(el, row + KAA, w, VECTORS, FIRST, 1.0, w, VECTORS, THIRD)
-    add_applied(el, row + KAB, w, VECTORS, SECOND, 1.0, w, VECTORS, THIRD)
-    add_applied_t(el, row + KAB, w, VECTORS, FIRST, 1.0, w, X, FIRST)
-    add_applied(el, row + KBB, w, VECTORS, SECOND, 1.0, w, X, FIRST)
+    add_applied(half_beams, row + KAA, w, VECTORS, FIRST, 1.0, w, VECTORS, THIRD)
+    add_applied(half_beams, row + KAB, w, VECTORS, SECOND, 1.0, w, VECTORS, THIRD)
+    add_applied_t(half_beams, row + KAB, w, VECTORS, FIRST, 1.0, w, X, FIRST)
+    add_applied(half_beams, row + KBB, w, VECTORS, SECOND, 1.0, w, X, FIRST)
     add_applied_t(w, T, w, VECTORS, THIRD, 1.0, w, WRENCH + end, FIRST)
     add_applied_t(w, L, w, VECTORS, THIRD, 1.0, w, WRENCH + end, SECOND)
     add_applied_t(w, T, w, X, FIRST, 1.0, w, WRENCH + end, SECOND)
@@ -182,14 +182,14 @@ def energy(w: Array, lanes: int) -> float:
 
 
 @native(entry=False)
-def stiffen(w: Array, el: Array, row: int, end: int, exact: bool) -> None:
+def stiffen(w: Array, half_beams: Array, row: int, end: int, exact: bool) -> None:
     """Find the stiffness C^T K C of half-beams, with second order terms where it is exact."""
-    product(el, row + KAA, w, T, w, KT)
-    product(el, row + KAA, w, L, w, KL)
-    add_product(el, row + KAB, w, T, 1.0, w, KL)
+    product(half_beams, row + KAA, w, T, w, KT)
+    product(half_beams, row + KAA, w, L, w, KL)
+    add_product(half_beams, row + KAB, w, T, 1.0, w, KL)
     clear(w, KB)
-    add_product_t(el, row + KAB, w, L, 1.0, w, KB)
-    add_product(el, row + KBB, w, T, 1.0, w, KB)
+    add_product_t(half_beams, row + KAB, w, L, 1.0, w, KB)
+    add_product(half_beams, row + KBB, w, T, 1.0, w, KB)
     clear(w, SAA + end)
     clear(w, SAB + end)
     clear(w, SBB + end)

@@ -1,7 +1,7 @@
 """Factors of the joints' stiffness: a sparse symmetric matrix of 6 x 6 blocks.
 
-Joints are eliminated in an order that keeps new blocks few (see `mechanics.ordering`). Blocks lie in
-an array (blocks, 36): first the diagonal ones in that order, then those below, column by column.
+Joints are eliminated in an order that keeps new blocks few (see `mechanics.ordering`). Blocks lie
+in an array (blocks, 36): first the diagonal ones in that order, then those below, column by column.
 Pivots need not be positive; how many are negative is the number of directions in which the energy
 falls (Sylvester's law of inertia).
 """

@@ -15,7 +15,7 @@ WIDE = 9 * LANES  # numbers in a row
 FAST = {"contract"}  # a product and a sum in one instruction; nothing else changes
 A1, A2, A3, A4, A5, A6, A7, A8 = (LANES * k for k in range(1, 9))
 
-Array = Any  # of numbers; what a kernel is called with settles its type
+Array = Any  # of numbers; their type is that of the first call
 
 
 @native(entry=False, fastmath=FAST)

@@ -1,4 +1,4 @@
-"""The frames of a grid by beam mechanics, each found from the ones before: the entry from Python."""
+"""The frames of a grid by beam mechanics, each from the ones before: the entry from Python."""
 
 from math import sqrt
 from typing import Any, NamedTuple
@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from simulearn.mechanics.kernels.assembly import Weights
-from simulearn.mechanics.kernels.elements import PLANE, quadratic, set_elements
+from simulearn.mechanics.kernels.elements import PLANE, quadratic, set_half_beams
 from simulearn.mechanics.kernels.equilibrium import make_space, solve
 from simulearn.mechanics.kernels.rotations import (
     inverse_left,
@@ -18,7 +18,7 @@ from simulearn.native import native
 
 Array = Any
 
-# What is said of each frame.
+# What is record of each frame.
 MOTION, NEGATIVE, WIDEST, FACTORS, STEPS, ASTRAY, MOVED, INFO = range(8)
 
 
@@ -42,18 +42,18 @@ class Frames(NamedTuple):
 
 @native(entry=False)
 def set_weights(
-    weights: Any, layout: Any, plan: Any, section: Array, load: Array, s: float, gravity: float
+    weights: Any, layout: Any, geometry: Any, section: Array, load: Array, s: float, gravity: float
 ) -> None:
     """Set what bodies carry: load is (body force N/mm3, section mm2, thickness mm)."""
     body, area, thick = load[0] * gravity, load[1], load[2]
-    for j in range(len(plan.area)):
-        weights.joint[j] = body * thick * plan.area[j]
-        weights.joint_volume[j] = thick * plan.area[j]
+    for j in range(len(geometry.area)):
+        weights.joint[j] = body * thick * geometry.area[j]
+        weights.joint_volume[j] = thick * geometry.area[j]
         for k in range(3):
             weights.lever[j, k] = 0.0
     plane = 1 + quadratic(section, PLANE, s)
-    for b in range(len(plan.length)):
-        half = plan.length[b] / 2
+    for b in range(len(geometry.length)):
+        half = geometry.length[b] / 2
         line = body * area
         weights.middle[b] = half * line
         weights.middle_volume[b] = half * area
@@ -64,7 +64,8 @@ def set_weights(
             weights.joint_volume[j] += half * area / 2
             for k in range(3):
                 weights.lever[j, k] += (
-                    share * plane * plan.face[end, b, k] + couple * plan.frame[end, b, 3 * k]
+                    share * plane * geometry.face[end, b, k]
+                    + couple * geometry.frame[end, b, 3 * k]
                 )
 
 
@@ -152,7 +153,7 @@ def furthest(a: Array, b: Array) -> float:
 
 @native()
 def follow(
-    layout: Any, plan: Any, section: Array, load: Array, ratio: Array, frames: Any,
+    layout: Any, geometry: Any, section: Array, load: Array, ratio: Array, frames: Any,
     guide_R: Array, guide_p: Array, guided: Array, begin: int, begun_near: bool, descend: bool,
     shove: float,
     tolerance: Array, most: int, far: Array, R: Array, p: Array, info: Array, twists: Array,
@@ -161,12 +162,13 @@ def follow(
 
     Args:
         layout: topology.
-        plan: the flat grid.
+        geometry: the flat grid.
         section: coefficients of the fitted section.
         load: body force N/mm3, section mm2, thickness mm.
         ratio: (B,) signed actuator ratios.
         frames: what acts in each.
-        guide_R, guide_p: (F, N, 9), (F, N, 3) poses near which those are expected.
+        guide_R: (F, N, 9) rotations near which those are expected.
+        guide_p: (F, N, 3) mm, the same of places.
         guided: (F,) whether they are given for a frame and the two before.
         begin: first frame to find.
         begun_near: whether the frame before is near the first.
@@ -175,7 +177,8 @@ def follow(
         tolerance: (F,) of the last motion, mm.
         most: factorisations in a frame.
         far: (F,) distance from where a frame is expected that is not plain, mm.
-        R, p: (F, N, 9), (F, N, 3) poses of joints and middles: frame 0 is given.
+        R: (F, N, 9) rotations of joints and middles: frame 0 is given.
+        p: (F, N, 3) mm, their places.
         info: (F, INFO) to set.
         twists: (F, 2, B, 6) to set: how far halves are from the section model's rest.
 
@@ -191,11 +194,11 @@ def follow(
     expected = np.empty((joints + beams, 3))
     for k in range(begin, len(frames.released)):
         s = frames.released[k]
-        set_elements(
-            space.el, space.rest, section, layout.ends, layout.fixed, plan.length, ratio,
-            plan.face, plan.frame, s, frames.corrections[k], frames.corrected,
+        set_half_beams(
+            space.half_beams, space.rest, section, layout.ends, layout.fixed, geometry.length,
+            ratio, geometry.face, geometry.frame, s, frames.corrections[k], frames.corrected,
         )  # fmt: skip
-        set_weights(weights, layout, plan, section, load, s, frames.gravity[k])
+        set_weights(weights, layout, geometry, section, load, s, frames.gravity[k])
         if guided[k]:
             follow_guide(R, p, guide_R, guide_p, k, R[k], p[k])
         else:
@@ -204,31 +207,38 @@ def follow(
         for i in range(joints + beams):  # the fixed joint stays
             for m in range(3):
                 expected[i, m] = p[k, i, m]
-        said = info[k]
+        record = info[k]
         near = guided[k] or frames.order[k] > 0 or begun_near
         motion, negative, widest, count, cheap = solve(
             layout, weights, space, R[k], p[k], tolerance[k], most, near, descend, shove,
             k == len(frames.released) - 1,
         )  # fmt: skip
-        said[MOTION], said[NEGATIVE], said[WIDEST] = motion, negative, widest
-        said[FACTORS], said[STEPS] = count, cheap
-        said[ASTRAY] = furthest(p[k], expected)
-        said[MOVED] = furthest(p[k], p[k - 1])
+        record[MOTION], record[NEGATIVE], record[WIDEST] = motion, negative, widest
+        record[FACTORS], record[STEPS] = count, cheap
+        record[ASTRAY] = furthest(p[k], expected)
+        record[MOVED] = furthest(p[k], p[k - 1])
         if frames.corrected:  # twists are from the rest that the section model has
-            set_elements(
-                space.el, space.rest, section, layout.ends, layout.fixed, plan.length, ratio,
-                plan.face, plan.frame, s, frames.corrections[k], k < 0,
+            set_half_beams(
+                space.half_beams, space.rest, section, layout.ends, layout.fixed,
+                geometry.length, ratio, geometry.face, geometry.frame, s, frames.corrections[k], k < 0,
             )  # fmt: skip
-        half_twists(layout, space.rest, plan, section, s, R[k], p[k], twists[k])
+        half_twists(layout, space.rest, geometry, section, s, R[k], p[k], twists[k])
         plain = motion <= tolerance[k] and negative == 0
-        if not plain or not said[ASTRAY] <= far[k]:
+        if not plain or not record[ASTRAY] <= far[k]:
             return k
     return len(frames.released)
 
 
 @native(entry=False)
 def half_twists(
-    layout: Any, rest: Array, plan: Any, section: Array, s: float, R: Array, p: Array, twists: Array
+    layout: Any,
+    rest: Array,
+    geometry: Any,
+    section: Array,
+    s: float,
+    R: Array,
+    p: Array,
+    twists: Array,
 ) -> None:
     """Set how far the halves' middles have left their places at rest: (2, B, 6)."""
     joints = len(layout.place)
@@ -237,8 +247,8 @@ def half_twists(
     for end in range(2):
         for b in range(layout.ends.shape[1]):
             j, m = layout.ends[end, b], joints + b
-            pose, at = rest[end, b], plan.face[end, b]
-            matrix_product(R[j], plan.frame[end, b], face)
+            pose, at = rest[end, b], geometry.face[end, b]
+            matrix_product(R[j], geometry.frame[end, b], face)
             matrix_product(face, pose, home)
             for i in range(9):
                 middle[i] = R[m, i] if end == 0 or i % 3 == 2 else -R[m, i]

@@ -26,7 +26,7 @@ E3, E4, E5 = np.float32(4.1665795894e-2), np.float32(1.6666665459e-1), np.float3
 def product(x: Array, matrix: Array, out: Array) -> None:
     """Set out = x @ matrix, in blocks of rows that BLAS does not share among threads.
 
-    OpenBLAS uses one thread up to 64 x 64 x 64 products; whole batches have threads of their own.
+    OpenBLAS uses one thread up to 64 x 64 x 64 products; rollout batches have threads of their own.
     """
     count = max(1, ALONE // (matrix.shape[0] * matrix.shape[1]))
     for row in range(0, len(x), count):
@@ -50,7 +50,8 @@ def activate(x: Array, width: int, powers: Array, bits: Array, scales: Array) ->
         x: (n, at least width).
         width: columns that count.
         powers: (width,) workspace.
-        bits, scales: (width,) workspace, the same memory as integers and as numbers.
+        bits: (width,) workspace, integers.
+        scales: (width,) the same memory as numbers.
     """
     for i in range(len(x)):
         row = x[i]

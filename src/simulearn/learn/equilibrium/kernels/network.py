@@ -62,7 +62,7 @@ class Layers(NamedTuple):
 
 @native(entry=False)
 def set_features(
-    x: Array, layers: Any, plan: Any, ends: Array, fixed: int, ratio: Array, valence: Array,
+    x: Array, layers: Any, geometry: Any, ends: Array, fixed: int, ratio: Array, valence: Array,
     R: Array, twists: Array, s: float, gravity: float, scale: float,
 ) -> None:  # fmt: skip
     """Set the rows of all halves (2 B), then of the mirrored design, in one frame."""
@@ -72,7 +72,7 @@ def set_features(
             row = x[end * beams + b]
             size, sign = abs(ratio[b]), (-1.0 if ratio[b] < 0 else 1.0)
             joint, other = ends[end, b], ends[1 - end, b]
-            length = plan.length[b] / scale
+            length = geometry.length[b] / scale
             held = 1.0 if joint == fixed else 0.0
             far_held = 1.0 if other == fixed else 0.0
             row[0] = length / 50 - 1
@@ -80,15 +80,15 @@ def set_features(
             row[2] = 1.0 if size == 0 else 0.0
             row[3] = (1 - size) * length / 40 - 0.5
             row[4] = size * length / 40 - 0.5
-            row[5] = plan.reach[end, b] / scale / 2 - 2
-            row[6] = plan.skew[end, b] / scale / 3
-            row[7] = plan.reach[1 - end, b] / scale / 2 - 2
-            row[8] = plan.skew[1 - end, b] / scale / 3
+            row[5] = geometry.reach[end, b] / scale / 2 - 2
+            row[6] = geometry.skew[end, b] / scale / 3
+            row[7] = geometry.reach[1 - end, b] / scale / 2 - 2
+            row[8] = geometry.skew[1 - end, b] / scale / 3
             row[9] = held
             row[10] = held * sign
             row[11] = far_held
             row[12] = far_held * sign
-            row[13] = plan.area[joint] / (scale * scale) / 30 - 2
+            row[13] = geometry.area[joint] / (scale * scale) / 30 - 2
             row[14] = valence[joint] - 3.0
             row[15] = 2 * s - 1
             row[16] = (gravity - 1) * 8
@@ -96,7 +96,7 @@ def set_features(
                 flip = layers.flip[k] if sign < 0 else 1.0
                 row[PLAIN + k] = twists[end, b, k] / layers.twist[k] * flip
                 row[PLAIN + 6 + k] = twists[1 - end, b, k] / layers.twist[k] * flip
-            frame = plan.frame[end, b]
+            frame = geometry.frame[end, b]
             for k in range(3):
                 down = sign if k == 2 else 1.0
                 above = 0.0
@@ -113,13 +113,13 @@ def set_features(
 
 
 @native(entry=False)
-def set_waves(waves: Array, plan: Any, ratio: Array) -> None:
+def set_waves(waves: Array, geometry: Any, ratio: Array) -> None:
     """Set 1, cos a, sin a, cos 2 a, sin 2 a and the sign of the actuator for all rows."""
     beams = len(ratio)
     for mirrored in range(2):
         for end in range(2):
             for b in range(beams):
-                frame = plan.frame[end, b]
+                frame = geometry.frame[end, b]
                 angle = atan2(frame[3], frame[0])
                 if mirrored == 1:
                     angle = -angle
@@ -184,21 +184,22 @@ def set_received(
 
 @native()
 def outputs(
-    layers: Any, plan: Any, ends: Array, fixed: int, ratio: Array, valence: Array, R: Array,
+    layers: Any, geometry: Any, ends: Array, fixed: int, ratio: Array, valence: Array, R: Array,
     twists: Array, released: Array, gravity: Array, scale: float, begin: int, out: Array,
 ) -> None:  # fmt: skip
     """Set the outputs of a network for all halves in some frames.
 
     Args:
         layers: weights.
-        plan: the flat grid.
+        geometry: the flat grid.
         ends: (2, B) joint of each half.
         fixed: the fixed joint.
         ratio: (B,) signed actuator ratios.
         valence: (J,) halves at each joint.
         R: (F, J + B, 9) rotations of joints and middles.
         twists: (F, 2, B, 6) of halves from their rest by the section model.
-        released, gravity: (F,) fraction, multiple.
+        released: (F,) fraction.
+        gravity: (F,) multiple.
         scale: of lengths.
         begin: the first frame that counts.
         out: (F, 2, B, outputs) to set.
@@ -216,16 +217,16 @@ def outputs(
     total = np.zeros((2 * len(valence), 2 * WAVES * message), np.float32)
     powers, scales = np.zeros(width + message, np.float32), np.zeros(width + message, np.float32)
     bits = scales.view(np.int32)
-    set_waves(waves, plan, ratio)
+    set_waves(waves, geometry, ratio)
     for f in range(begin, len(released)):
         set_features(
-            x, layers, plan, ends, fixed, ratio, valence, R[f], twists[f], released[f],
+            x, layers, geometry, ends, fixed, ratio, valence, R[f], twists[f], released[f],
             gravity[f], scale,
         )  # fmt: skip
         layered = 4 + 2 * len(layers.into)
         for layer in range(layered):  # one place for each kernel: what is called is compiled in
             r = layer // 2 - 1
-            ask = 2 <= layer < layered - 2 and layer % 2 == 0
+            sending = 2 <= layer < layered - 2 and layer % 2 == 0
             update = 2 <= layer < layered - 2 and layer % 2 == 1
             source, target, bias = b, c, layers.update_bias[0]
             matrix = layers.second
@@ -237,7 +238,7 @@ def outputs(
                 target, matrix, bias = a, layers.third, layers.third_bias
             elif layer == layered - 1:
                 source, target, matrix, bias = a, ends_of, layers.last, layers.last_bias
-            elif ask:
+            elif sending:
                 target, matrix, bias = messages, layers.into[r], layers.into_bias[r]
             else:
                 matrix, bias = layers.own[r], layers.update_bias[r]
@@ -255,7 +256,7 @@ def outputs(
             add_rows(target, bias)
             if layer < layered - 1:
                 activate(target, target.shape[1], powers, bits, scales)
-            if ask:
+            if sending:
                 set_received(received, messages, message, waves, ends, total)
             if update:
                 for i in range(rows):

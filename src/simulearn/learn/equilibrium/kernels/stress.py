@@ -13,19 +13,20 @@ INSIDE = 0.9  # mm from a half's end, where stress is sampled
 
 @native()
 def stress_in_space(
-    elastic: Array, plan: Any, ends: Array, ratio: Array, R: Array, released: Array, along: float,
-    across: float, begin: int, out: Array,
+    elastic: Array, geometry: Any, ends: Array, ratio: Array, R: Array, released: Array,
+    along: float, across: float, begin: int, out: Array,
 ) -> None:  # fmt: skip
     """Set the stress of some frames: what was printed in and is not released yet, plus elastic.
 
     Args:
         elastic: (F, 2, B, 48) MPa, in the halves' axes: [face, middle], corner, component.
-        plan: the flat grid.
+        geometry: the flat grid.
         ends: (2, B) joint of each half.
         ratio: (B,) signed actuator ratios.
         R: (F, J + B, 9) rotations of joints and middles.
         released: (F,) fraction.
-        along, across: MPa, printed in along active and across passive material.
+        along: MPa, printed in along active material.
+        across: MPa, printed in across passive material.
         begin: the first frame that counts.
         out: (F, B, 4, 4, 6) MPa to set, in global axes: 11, 22, 33, 12, 13, 23.
     """
@@ -35,10 +36,10 @@ def stress_in_space(
         left = 1 - released[f]
         for b in range(beams):
             for end in range(2):
-                joint, frame = ends[end, b], plan.frame[end, b]
+                joint, frame = ends[end, b], geometry.frame[end, b]
                 for spot in range(2):  # near the face, near the middle
                     if spot == 0:
-                        active = (1 - abs(ratio[b])) / 2 * plan.length[b] < INSIDE
+                        active = (1 - abs(ratio[b])) / 2 * geometry.length[b] < INSIDE
                         for i in range(3):
                             for j in range(3):
                                 axes[i, j] = 0.0

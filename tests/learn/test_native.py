@@ -1,0 +1,135 @@
+"""The default model on native kernels: the reference's networks, batches, smoothness, snaps."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import jax
+import numpy as np
+import pytest
+from conformance import designs_like
+
+from simulearn.grid import Rules, draw_valid, read_grid
+from simulearn.grid.outline import corner_topology
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.model import Designs
+from simulearn.learn.equilibrium import corrector, native
+from simulearn.learn.equilibrium.kernels.network import outputs
+from simulearn.mechanics.forces import BeamState
+from simulearn.mechanics.path import grid_of, schedule_frames, trace
+from simulearn.mechanics.poses import Pose
+from simulearn.mechanics.topology import Topology, flat_geometry, topologies
+from simulearn.native import on_compile
+
+SNAPS = Path(__file__).parent.parent / "data" / "snaps.json"
+
+
+@pytest.fixture(scope="module")
+def model():
+    return bundle_of("equilibrium").model
+
+
+def of(*grids) -> Designs:
+    grids = [grid.centred for grid in grids]
+    flat, ratios = np.stack([g.joints for g in grids]), np.stack([g.actuators for g in grids])
+    return Designs(grids[0].beams, grids[0].fixed, flat, ratios)
+
+
+@pytest.mark.parametrize("rules", [Rules(), Rules(cells=(2, 3)), Rules(removed=(2, 2))])
+def test_networks_are_those_of_the_reference(model, rules):
+    designs, frame = of(draw_valid(rules, 5, 1)[0]), 9
+    corners = tuple(x[0] for x in corner_topology(designs.beams, designs.flat))
+    networks, material = native.networks_of(model.parameters, model.material), model.material
+    grid = grid_of(
+        designs.beams, designs.fixed, designs.flat[0], designs.actuators[0], corners,
+        networks.section, material,
+    )  # fmt: skip
+    frames = schedule_frames(len(designs.beams), material)
+    path = trace(grid, frames)
+    count = designs.flat.shape[1]
+    valence = np.bincount(designs.beams.ravel(), minlength=count).astype(float)
+
+    def ours(layers):
+        out = np.zeros((12, 2, len(designs.beams), len(layers.size)))
+        outputs(
+            layers, grid.geometry, grid.layout.ends, grid.layout.fixed, grid.ratio, valence,
+            path.R, path.twists, frames.released, frames.gravity, networks.scale, 1, out,
+        )  # fmt: skip
+        return out[frame]
+
+    with jax.enable_x64(True):
+        many = topologies(designs.beams, designs.fixed, designs.flat)
+        topology = Topology(*(x[0] for x in many))
+        geometry = flat_geometry(topology, designs.flat[0], material.section)
+        R, p = path.R[frame].reshape(-1, 3, 3), path.p[frame]
+        state = BeamState(Pose(R[:count], p[:count]), Pose(R[count:], p[count:]))
+        features = corrector.features_of(
+            topology, geometry, designs.actuators[0], state, path.twists[frame],
+            frames.released[frame], frames.gravity[frame],
+        )  # fmt: skip
+        parameters = model.parameters
+        theirs = corrector.corrections(parameters.network, topology, features)
+        stress = corrector.stresses(parameters.stress, topology, features)
+        both = [np.asarray(x).reshape(2, len(designs.beams), -1) for x in theirs]
+    np.testing.assert_allclose(ours(networks.corrections), np.concatenate(both, -1), atol=2e-6)
+    np.testing.assert_allclose(
+        ours(networks.stress), np.asarray(stress).reshape(2, len(designs.beams), -1), atol=2e-7
+    )
+
+
+def test_a_design_does_not_depend_on_its_batch(model):
+    designs = designs_like(Rules(), 9)
+    many, one = model.rollout(designs), model.rollout(designs.take([7]))
+    for a, b in ((many.joints, one.joints), (many.sections, one.sections)):
+        np.testing.assert_array_equal(a[7], b[0])
+    np.testing.assert_array_equal(many.stress[7], one.stress[0])
+    np.testing.assert_array_equal(
+        model.last(designs).joints[7], model.last(designs.take([7])).joints[0]
+    )
+
+
+def test_a_joint_moved_moves_the_shape_smoothly(model):
+    grid = draw_valid(Rules(), 7, 3)[0].centred
+    designs = of(*[grid] * 9)
+    designs.flat[:, 8] += 0.1 * np.arange(9)[:, None] * [0.6, 0.8]
+    for shape in (model.rollout(designs).joints[:, -1], model.last(designs).joints):
+        kinks = np.diff(shape, n=4, axis=0)  # what is smooth has next to no fourth difference
+        assert np.abs(np.diff(shape, axis=0)).max() > 0.01
+        assert np.abs(kinks).max() < 1e-3
+
+
+def test_a_topology_never_met_compiles_nothing(model):
+    model.rollout(designs_like(Rules(), 1))
+    model.last(designs_like(Rules(), 1))
+    compiled = []
+    with on_compile(lambda: compiled.append(True)):
+        frames = model.rollout(of(draw_valid(Rules(cells=(4, 1), length=(30, 40)), 3, 0)[0]))
+        model.last(of(draw_valid(Rules(cells=(3, 2)), 3, 0)[0]))
+    assert frames.converged.all()
+    assert not compiled
+
+
+def test_a_snap_is_followed_and_recorded(model):
+    frames = model.rollout(of(read_grid(SNAPS)))
+    assert frames.converged.all()
+    assert frames.stable.all()
+    first = frames.snaps[0][0]
+    assert first.frame == 10
+    assert first.released == pytest.approx(0.944, abs=0.03)  # of the finite elements
+    steps = np.linalg.norm(np.diff(frames.joints[0].mean(axis=2), axis=0), axis=-1).max(axis=-1)
+    assert steps[9] > 3 * steps[8]
+
+
+def test_it_answers_without_jax():
+    code = (
+        "import sys, numpy as np\n"
+        "from simulearn.grid import make\n"
+        "from simulearn.learn.common.bundle import bundle_of\n"
+        "from simulearn.learn.common.model import Designs, last_frame\n"
+        "g = make('cone')\n"
+        "d = Designs(g.beams, g.fixed, g.joints[None], g.actuators[None])\n"
+        "model = bundle_of('default').model\n"
+        "assert model.rollout(d).converged.all() and last_frame(model, d).converged.all()\n"
+        "assert 'jax' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=300)

@@ -1,0 +1,141 @@
+"""Native paths of beam mechanics: equilibria of the reference, stability, snaps, balances."""
+
+from math import cos, pi, sin
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from simulearn.grid import Grid, Rules, draw_valid, make, outline
+from simulearn.grid.outline import corner_topology
+from simulearn.material import load_material
+from simulearn.mechanics.forces import BeamState, forces, twists
+from simulearn.mechanics.kernels.path import NEGATIVE
+from simulearn.mechanics.ordering import layout_of
+from simulearn.mechanics.path import coefficients, grid_of, schedule_frames, trace
+from simulearn.mechanics.poses import Pose
+from simulearn.mechanics.rollout import half_beams_at, loads
+from simulearn.mechanics.section import first_guess
+from simulearn.mechanics.stiffness import exact_stiffness
+from simulearn.mechanics.topology import Topology, flat_geometry, topologies
+from simulearn.schedule import SCHEDULE
+
+PLA = load_material("pla-hot-water")
+
+
+def polygon(count: int) -> Grid:
+    corners = [(60 * cos(2 * pi * k / count), 60 * sin(2 * pi * k / count)) for k in range(count)]
+    beams = [(k, (k + 1) % count) for k in range(count)]
+    ratios = [(-1) ** k * 0.5 for k in range(count)]
+    return Grid(np.array(corners), np.array(beams), np.array(ratios), 0)
+
+
+GRIDS = {
+    "2 x 2": lambda: draw_valid(Rules(), 7, 0)[0],
+    "beams removed": lambda: draw_valid(Rules(removed=(2, 3)), 7, 1)[0],
+    "2 x 3": lambda: draw_valid(Rules(cells=(2, 3)), 7, 2)[0],
+    "3 x 3": lambda: draw_valid(Rules(cells=(3, 3)), 7, 3)[0],
+    "ring": lambda: polygon(5),
+    "cross": lambda: make("saddle", (2, 2), 50.0),
+}
+
+
+def native(grid: Grid, section_model=None, **options):
+    grid = grid.centred
+    corners = tuple(x[0] for x in corner_topology(grid.beams, grid.joints[None]))
+    model = coefficients(first_guess(PLA) if section_model is None else section_model)
+    design = grid_of(grid.beams, grid.fixed, grid.joints, grid.actuators, corners, model, PLA)
+    return design, trace(design, schedule_frames(len(grid.beams), PLA), **options)
+
+
+def reference(grid: Grid, path, frame: int):
+    """Half-beams, state, and topology of a frame, as the reference in JAX has them."""
+    grid = grid.centred
+    many = topologies(grid.beams, grid.fixed, grid.joints[None])
+    topology = Topology(*(x[0] for x in many))
+    geometry = flat_geometry(topology, jnp.asarray(grid.joints), PLA.section)
+    gravity = SCHEDULE.gravity(PLA.creep.amplitude)[frame]
+    half_beams = half_beams_at(
+        first_guess(PLA), topology, geometry, jnp.asarray(grid.actuators), loads(PLA),
+        jnp.array(SCHEDULE.released[frame]), jnp.array(gravity),
+    )  # fmt: skip
+    count = len(grid.joints)
+    R, p = jnp.asarray(path.R[frame].reshape(-1, 3, 3)), jnp.asarray(path.p[frame])
+    state = BeamState(Pose(R[:count], p[:count]), Pose(R[count:], p[count:]))
+    return topology, half_beams, state
+
+
+@pytest.mark.parametrize("kind", GRIDS)
+@pytest.mark.parametrize("frame", [11])
+def test_states_are_equilibria_of_the_reference(kind, frame):
+    grid = GRIDS[kind]()
+    _, path = native(grid, tolerance=1e-9)
+    assert path.ended
+    topology, half_beams, state = reference(grid, path, frame)
+    out = forces(topology, half_beams, state)
+    left = np.concatenate([np.asarray(out.joints).ravel(), np.asarray(out.middles).ravel()])
+    left[6 * grid.fixed : 6 * grid.fixed + 6] = 0
+    motion = np.linalg.solve(np.asarray(exact_stiffness(topology, half_beams, state)), left)
+    turns = motion.reshape(-1, 6)
+    moved = turns[:, :3] + np.cross(turns[:, 3:], path.p[frame])
+    assert np.abs(moved).max() < 1e-8  # mm
+    d = np.asarray(twists(topology, half_beams, state))
+    np.testing.assert_allclose(path.twists[frame], d, atol=1e-9)
+
+
+def falling(grid: Grid, path, frame: int) -> int:
+    """Number of directions in which the energy falls, by eigenvalues of the dense stiffness."""
+    stiffness = np.asarray(exact_stiffness(*reference(grid, path, frame)))
+    return int((np.linalg.eigvalsh((stiffness + stiffness.T) / 2) < 0).sum())
+
+
+def test_pivots_count_the_directions_in_which_the_energy_falls():
+    grid = make("dome")
+    _, path = native(grid, small_steps=False)
+    k = int(np.argmax(path.info[:, NEGATIVE] > 0))
+    assert k > 1
+    assert not path.ended
+    assert falling(grid, path, k) == path.info[k, NEGATIVE] > 0
+    assert falling(grid, path, k - 1) == 0
+
+
+def test_a_dome_leaves_its_unstable_balance():
+    grid = make("dome")
+    _, path = native(grid)
+    assert path.ended
+    assert path.left_balance
+    assert falling(grid, path, 11) == 0
+    heights = path.p[11, :9, 2].reshape(3, 3)
+    turned = np.abs(heights - np.rot90(heights)).max()
+    assert turned > 5  # mm: half the symmetry of the design is lost
+
+
+def test_joints_are_eliminated_with_few_new_blocks():
+    grid = make("flat", (6, 6))
+    layout = layout_of(grid.beams, grid.fixed, len(grid.joints))
+    assert layout.blocks < 49 * 48 / 2 / 2
+    assert sorted(layout.place) == list(range(-1, 48))
+
+
+def test_logarithms_are_right_beyond_two_radians():
+    from simulearn.mechanics.poses import exp_se3, log_se3
+
+    x = jnp.array([[3.0, -2.0, 1.0, 1.9, -1.7, 1.2], [1.0, 2.0, 3.0, 0.01, 0.0, 0.0]])
+    np.testing.assert_allclose(log_se3(exp_se3(x)), x, atol=1e-6)
+
+
+def test_outlines_agree_with_the_geometry():
+    grid = draw_valid(Rules(), 7, 5)[0].centred
+    design, _ = native(grid)
+    corners = outline(grid, PLA.section).joints
+    here = design.geometry.centre[:, None] + design.geometry.corners
+    np.testing.assert_allclose(here[:, :4, :2], corners[..., :2], atol=1e-9)
+
+
+def test_derivatives_hold_at_small_angles():
+    from simulearn.mechanics.poses import exp_se3, log_se3
+
+    x = jnp.array([0.3, 0.1, -0.2, 0.02, 0.1, 0.27])
+    slope = jax.jacobian(lambda y: log_se3(exp_se3(y)))(x)
+    np.testing.assert_allclose(slope, np.eye(6), atol=1e-8)
