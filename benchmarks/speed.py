@@ -56,7 +56,7 @@ def seconds(grid):
 first = seconds(make("saddle"))
 known = [seconds(draw_valid(Rules(), 4242, k)[0]) for k in range(%d)]
 new = []
-for grid in (drop_beams(make("saddle"), [0]), drop_beams(make("saddle"), [0, 1])):
+for grid in (drop_beams(make("saddle"), [0, 5]), drop_beams(make("saddle"), [0, 10])):
     new.append([seconds(grid), seconds(grid)])
 print(json.dumps({"first": first, "known": known, "new": new}))
 """

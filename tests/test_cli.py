@@ -259,7 +259,16 @@ def test_an_interrupt_keeps_what_is_written(run, monkeypatch, tmp_path):
     assert written(tmp_path / "out") == ["saddle.json"]
 
 
-def test_another_material_replaces_the_grids_own(run, solved, monkeypatch, tmp_path):
+@pytest.fixture
+def light(tmp_path):
+    """The file of a material without weight."""
+    path = tmp_path / "light.toml"
+    text = (HERE / "pla-hot-water.toml").read_text("utf-8")
+    path.write_text(text.replace("acceleration = 2182", "acceleration = 0"), "utf-8")
+    return path
+
+
+def test_another_material_replaces_the_grids_own(run, monkeypatch, tmp_path, light):
     materials = []
 
     def solver(grid, material, progress, cancel):
@@ -267,16 +276,29 @@ def test_another_material_replaces_the_grids_own(run, solved, monkeypatch, tmp_p
         return synthetic.result(grid)
 
     monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
-    path = tmp_path / "light.toml"
-    path.write_text(
-        (HERE / "pla-hot-water.toml")
-        .read_text("utf-8")
-        .replace("acceleration = 2182", "acceleration = 0"),
-        "utf-8",
-    )
-    assert run("simulate", "saddle", "--material", path)[0] == 0
-    assert materials[0].gravity.acceleration == 0
+    monkeypatch.setattr("simulearn.inverse.search.warm", lambda engine: None)
+    small, task = tmp_path / "small.json", tmp_path / "task.json"
+    grid = grid_to_dict(make("flat", (1, 1), 50.0))
+    small.write_text(json.dumps(grid))
+    goal = {"vertex": ["joint", 3, "centre"], "target": [45.0, 45.0, 6.0]}
+    data = {"schema": "simulearn.task/1", "grid": grid, "goals": [goal], "engine": "fea"}
+    limits = {"seconds": 1, "iterations": 1, "corrections": 0}
+    task.write_text(json.dumps(data | {"method": "brute-force", "limits": limits}))
+    for words in (
+        ["simulate", small],
+        ["simulate", small, "saddle", "-o", f"{tmp_path}/out/"],
+        ["rank", small, "--engine", "fea"],
+        ["rank", task],
+        ["optimize", task, "-o", tmp_path / "found"],
+    ):
+        materials.clear()
+        assert run(*words, "--material", light)[0] == 0, words
+        assert {material.gravity.acceleration for material in materials} == {0}, words
     assert "none.toml" in refused(run("simulate", "saddle", "--material", "none.toml"))
+    assert run("gcode", small, "--printer", "prusa-mk4", "--material", light)[0] == 0
+    assert "none.toml" in refused(
+        run("gcode", small, "--printer", "prusa-mk4", "--material", "none.toml")
+    )
 
 
 # validate

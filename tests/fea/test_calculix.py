@@ -3,13 +3,14 @@
 import os
 import shutil
 import stat
+import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 from skfem import Basis, ElementHexS2, MeshHex
 
-from simulearn.errors import ComputationError, InputError
+from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.fea import THREE_ACROSS, Solid, simulate_grid
 from simulearn.fea.calculix import calculix
 from simulearn.fea.calculix import simulate_grid as simulate_by_calculix
@@ -21,7 +22,7 @@ from simulearn.fea.calculix.run import Kind
 from simulearn.fea.calculix.schedule import schedule
 from simulearn.fea.kernels import checks
 from simulearn.fea.laws import law_of
-from simulearn.grid import Grid
+from simulearn.grid import Grid, make
 from simulearn.material import ElasticData, Material, load_material
 
 SVK = "st-venant-kirchhoff"
@@ -428,3 +429,11 @@ def test_the_last_error_is_told_in_one_line() -> None:
     log = "good\n *ERROR: first\n\n *ERROR in e_c3d: nonpositive jacobian\n   in 5\n\nend\n"
     assert last_error(log) == "in e_c3d: nonpositive jacobian in 5"
     assert last_error("fine") == ""
+
+
+@pytest.mark.usefixtures("ccx")
+def test_it_can_be_cancelled() -> None:
+    event = threading.Event()
+    event.set()
+    with pytest.raises(CancelledError):
+        simulate_by_calculix(make("flat", (1, 1)), load_material("pla-hot-water"), cancel=event)

@@ -212,3 +212,30 @@ def test_a_simulation_does_not_load_jax() -> None:
         "assert 'jax' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def arch(control: Control) -> tuple[Path, np.ndarray]:
+    """A shallow arch between held ends under a load that pushes it through, and its middle."""
+    material = ladder.elastic(2.2, 0.0, 7.2, 2.0)
+    solid = ladder.cantilever(material, 60.0, Layout(slabs=8))
+    x = np.clip(solid.nodes[:, 0], 0, 60)
+    nodes = solid.nodes + np.outer(1.5 * (1 - np.cos(2 * np.pi * x / 60)), [0, 0, 1])
+    held = np.flatnonzero(abs(solid.nodes[:, 0] - 30) > 29.9)
+    middle = np.flatnonzero(abs(solid.nodes[:, 0] - 30) < 3)
+    forces = np.zeros_like(nodes)
+    forces[middle, 2] = -0.3 / len(middle)
+    solid = replace(solid, nodes=nodes, fixed=held)
+    problem = EquilibriumProblem(solid, law_of(material.law), 0.0, forces, control)
+    return Path(problem, [replace(problem.flat(), released=1.0)]), middle
+
+
+@pytest.mark.parametrize("steps", [10, 3, 1])
+@pytest.mark.parametrize("iterations", [15, 60])
+def test_no_increment_jumps_over_a_snap_unseen(steps: int, iterations: int) -> None:
+    """However long the increments and patient the iteration: one snap, and the same shape."""
+    path, middle = arch(Control(iterations=iterations))
+    for k in range(steps):
+        path.advance(1.0, (k + 1) / steps, 1)
+    assert len(path.snaps) == 1
+    assert path.last[-1].stable
+    assert path.last[-1].u[middle, 2].mean() == pytest.approx(-8.686, abs=1e-3)

@@ -11,6 +11,8 @@ from typer.testing import CliRunner
 from simulearn.cli import app
 from simulearn.grid import make, write_grid
 from simulearn.learn.common.bundle import bundle_of, save_bundle
+from simulearn.material import load_material
+from simulearn.material.material import HERE
 
 runner = CliRunner()
 
@@ -101,6 +103,17 @@ def test_evaluate_prints_a_table_and_can_keep_it_in_the_card(folder, sample_file
     assert result.exit_code == 0, result.output
     assert "tiny on 8 trials of sample" in stdout
     assert bundle_of(folder).card.metrics["sample"]["trials"] == 8
+
+
+def test_evaluate_refuses_trials_of_another_material(folder, sample_file, tmp_path):
+    text = (HERE / "pla-hot-water.toml").read_text("utf-8")
+    same, other = tmp_path / "same.toml", tmp_path / "other.toml"
+    same.write_text(text, "utf-8")
+    other.write_text(text.replace("acceleration = 2182", "acceleration = 0"), "utf-8")
+    assert run("evaluate", folder, sample_file, "--material", same)[0].exit_code == 0
+    result, _ = run("evaluate", folder, sample_file, "--material", other)
+    for path in (same, other):
+        assert load_material(path).digest[:12] in str(result.exception)
 
 
 def test_simulate_asks_the_model_and_warns_outside_its_ranges(folder, tmp_path):

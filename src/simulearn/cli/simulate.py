@@ -229,7 +229,8 @@ def _overview(rows: "dict[str, Outcome | InputError]") -> Table:
         numbers = summary(row)
         bound = "" if row.bound_mm is None else f"{row.bound_mm:.2f}"
         notes = [] if row.stable else ["unstable"]
-        notes += [f"{len(row.warnings)} warnings"] if row.warnings else []
+        count = len(row.warnings)
+        notes += [f"{count} warning" + "s" * (count > 1)] if count else []
         table.add_row(
             title,
             f"{numbers['lowest_mm']:.1f}",
@@ -253,6 +254,8 @@ def _table(result: "Result") -> Table:
     caption += f"\nmaterial {result.material}"
     if result.model is not None:
         caption += f", model {result.model}"
+    if result.bound_mm is not None:
+        caption += f"\nnine of ten such answers are off by less than {result.bound_mm:.2f} mm"
     table = Table(
         box=None,
         title=(

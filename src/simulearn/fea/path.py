@@ -1,9 +1,9 @@
 """The path of a solid while its stress is released: increment by increment, snaps followed.
 
 Each increment starts from a quadratic extrapolation of the last three states. One that does not
-converge is halved; where even a hundredth of the release has no equilibrium near, or one far from
-the extrapolation, the solid snaps and `flow` leads to the next equilibrium. An equilibrium that is
-not stable is left along its softest mode. So there is always an answer, and never a wrong one.
+converge is halved, and so is one that leads through unstable states or far from the extrapolation.
+Where even a hundredth of the release does, the solid snaps, and `flow` leads to the next
+equilibrium. An equilibrium that is not stable is left along its softest mode.
 """
 
 from collections.abc import Sequence
@@ -34,6 +34,7 @@ class Path:
         last: up to three states on the same smooth path.
         halved: increments that had to be halved.
         snaps: sudden motions, in their order.
+        motions: how far some part moved in each of them, mm.
         messages: what qualifies the states.
     """
 
@@ -42,6 +43,7 @@ class Path:
         self.last = list(states) or [problem.flat()]
         self.halved = 0
         self.snaps: list[Snap] = []
+        self.motions: list[float] = []
         self.messages: list[Message] = []
 
     def restart(self) -> None:
@@ -96,9 +98,9 @@ class Path:
             state = self.problem.equilibrium(guess)
         except NotConvergedError:
             return None
-        if len(self.last) > 2 and abs(state.u - guess.u).max() > FAR * self.problem.size:
-            return None  # another branch
-        return state
+        far = len(self.last) > 2 and abs(state.u - guess.u).max() > FAR * self.problem.size
+        # Through an unstable stretch, or far from where the path led: another branch.
+        return None if far or (state.crossed and state.stable) else state
 
     def _snap(self, s: float, g: float, frame: int) -> None:
         """Follow the flow from the last state to the equilibrium under another load."""
@@ -114,10 +116,14 @@ class Path:
             )
         elif motion > FAR * self.problem.size:
             self.snaps.append(Snap(before.released, frame))
+            self.motions.append(motion)
+            when = f"at {100 * before.released:.1f} % of the stress released"
+            if s == before.released:
+                when = f"while it creeps, as under {before.gravity:.2f} times gravity"
             self._say(
                 "snap",
-                f"the grid snaps at {100 * before.released:.1f} % of the stress released (frame "
-                f"{frame}): some part of it moves by {motion:.0f} mm at once",
+                f"the grid snaps {when} (frame {frame}): some part of it moves by {motion:.0f} mm "
+                "at once",
             )
 
     def _leave(self, balance: SolidState, frame: int) -> None:

@@ -63,14 +63,7 @@ def printing(
             np.array([nu, -1, nu]) * e.passive,
         ]
     )
-    stress = np.array(
-        [
-            [e.stress_joint, e.stress_joint, 0],
-            [e.stress_shell, 0, 0],
-            [e.stress_active, 0, 0],
-            [0, e.stress_passive, 0],
-        ]
-    )
+    stress = np.array([e.printed[kind] for kind in kinds])
     ratio = grid.actuators[beam]
     active = (abs(along - 0.5) < abs(ratio) / 2) & (np.where(top, 1, -1) == np.sign(ratio))
     shell = material.section.shell / material.section.width

@@ -25,7 +25,6 @@ BALANCED = 1e-3
 DRIFT = 0.05
 MODE_ITERATIONS = 12
 GROWTH = 100  # of a step over the least one: it diverges
-MANY = 1000  # iterations: no limit
 
 
 @dataclass(frozen=True)
@@ -33,8 +32,8 @@ class Control:
     """When an increment has converged, and when to give up.
 
     Attributes:
-        tolerance: largest change of a displacement in the last iteration, mm in a grid of 100 mm;
-            in proportion in others. Convergence is quadratic: what is left is far smaller.
+        tolerance: of displacements, mm in a grid of 100 mm, in proportion in others. The last
+            correction is below `REST` of it, and the forces are balanced to `BALANCED`.
         iterations: at most, in one increment.
         halvings: at most, of one increment.
         mixed: carry the stress as an own unknown; without, it is plain Newton.
@@ -57,6 +56,7 @@ class SolidState:
         carried: (M, 6) MPa, second Piola-Kirchhoff stress at the points, in the grown state, order
             11 22 33 12 13 23.
         negative: number of negative eigenvalues of the stiffness.
+        crossed: whether the iteration came through displacements where the stiffness had some.
     """
 
     released: float
@@ -64,6 +64,7 @@ class SolidState:
     u: Array
     carried: Array
     negative: int = 0
+    crossed: bool = False
 
     @property
     def stable(self) -> bool:
@@ -169,7 +170,7 @@ class EquilibriumProblem:
         start: SolidState,
         viscosity: float = 0.0,
         origin: Array | None = None,
-        iterations: int = 0,
+        most: int | None = None,
     ) -> SolidState:
         """Return the equilibrium near a state, under that state's released fraction and gravity.
 
@@ -177,52 +178,75 @@ class EquilibriumProblem:
             start: where to begin; it need not be in equilibrium.
             viscosity: resistance c to motion away from `origin`, N/mm per mm3; see `flow`.
             origin: (N, 3) mm, displacements that it resists to leave.
-            iterations: at most, if fewer than the control's.
+            most: iterations at most, if fewer than the control's.
 
         Raises:
             NotConvergedError: none was reached.
             CancelledError: the token said so.
         """
-        s, load, drag = start.released, start.gravity * self.load, viscosity * self.mass
-        tolerance = self.control.tolerance * self.size / 100
+        control, s = self.control, start.released
         u, carried = start.u, start.carried
         least = change = np.inf
-        for _ in range(min(iterations or MANY, self.control.iterations)):
+        crossed = False
+        for _ in range(min(control.iterations, most or control.iterations)):
             stop_if(self.cancel)
             self.iterations += 1
-            out = load if origin is None else load - drag[:, None] * (u - origin)
-            step, negative = self.factor(u, s, carried, out, viscosity, self.control.mixed)
+            load = self._external(u, start.gravity, viscosity, origin)
+            step, negative = self.factor(u, s, carried, load, viscosity, control.mixed)
+            crossed |= negative > 0
             factored = carried
             change = _largest(step)
             if not change < min(GROWTH * least, 100 * self.size):
-                raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")
+                break
             least = min(least, change)
             carried = entries.carry(self.law, self.bricks, u, step, s)
             u = u + step
-            near = change < NEAR * self.size
-            while near:
-                forces, carried, _, _, scale = entries.internal(self.law, self.bricks, u, s)
-                out = (
-                    load - forces
-                    if origin is None
-                    else load - forces - drag[:, None] * (u - origin)
-                )
-                out[self.solid.fixed] = 0.0
-                balanced = np.sqrt((out * out).sum()) < BALANCED * scale + self._nothing
-                step = self.solve(out)
-                self.corrections += 1
-                before, change = change, _largest(step)
-                small = change < REST * tolerance
-                if not (small or change < before):
-                    break
-                u = u + step
-                # They converge linearly, so what is left is a part of the last one.
-                if small and balanced:
-                    if abs(carried - factored).max() > DRIFT * abs(carried).max() + self._rounding:
-                        break  # the factors know nothing of this stress: is it stable?
-                    return SolidState(s, start.gravity, u, carried, negative)
-                near = change < before / 5
+            if change < NEAR * self.size:
+                u, carried, change, done = self._correct(u, start, viscosity, origin, change)
+                # Where the factors know nothing of the stress, their pivots do not tell.
+                drift = abs(carried - factored).max()
+                known = not control.mixed or drift < DRIFT * abs(carried).max() + self._rounding
+                if done and known:
+                    return SolidState(s, start.gravity, u, carried, negative, crossed)
         raise NotConvergedError(f"the last iteration still moved it by {change:.2g} mm")
+
+    def _correct(
+        self, u: Array, start: SolidState, viscosity: float, origin: Array | None, change: float
+    ) -> tuple[Array, Array, float, bool]:
+        """Correct displacements with the factors at hand as long as that converges fast.
+
+        Args:
+            u: (N, 3) mm, after a full step.
+            start: the state that says what is released and what gravity acts.
+            viscosity: see `equilibrium`.
+            origin: see `equilibrium`.
+            change: largest component of the full step, mm.
+
+        Returns:
+            displacements, their stress S (M, 6), the last change (mm), and whether it is the end.
+        """
+        end = REST * self.control.tolerance * self.size / 100
+        while True:
+            forces, stress, _, _, scale = entries.internal(self.law, self.bricks, u, start.released)
+            out = self._external(u, start.gravity, viscosity, origin) - forces
+            out[self.solid.fixed] = 0.0
+            balanced = np.sqrt((out * out).sum()) < BALANCED * scale + self._nothing
+            step = self.solve(out)
+            self.corrections += 1
+            before, change = change, _largest(step)
+            if not (change < end or change < before):
+                return u, stress, change, False
+            u = u + step
+            # They converge linearly, so what is left is a part of the last one.
+            if (change < end and balanced) or not change < before / 5:
+                return u, stress, change, change < end and balanced
+
+    def _external(self, u: Array, gravity: float, viscosity: float, origin: Array | None) -> Array:
+        """Return the load (N, 3) at displacements u, with the viscous resistance, N."""
+        load = gravity * self.load
+        if origin is not None:
+            load -= viscosity * self.mass[:, None] * (u - origin)
+        return load
 
     def soft_modes(self, many: int) -> tuple[Array, Array]:
         """Return the eigenvalues nearest zero of the stiffness last factored, and their modes.
@@ -243,8 +267,7 @@ class EquilibriumProblem:
             y = np.stack([self.solve(mass * v) for v in x])
             inner = np.einsum("ank,bnk->ab", y * mass, y)
             low, turn = np.linalg.eigh(inner)
-            basis = np.einsum("ab,ank->bnk", turn / np.sqrt(np.maximum(low, 1e-300)), y)
-            x = basis
+            x = np.einsum("ab,ank->bnk", turn / np.sqrt(np.maximum(low, 1e-300)), y)
         y = np.stack([self.solve(mass * v) for v in x])
         inverse, turn = np.linalg.eigh(np.einsum("ank,bnk->ab", x * mass, y))
         order = np.argsort(-abs(inverse))[:many]

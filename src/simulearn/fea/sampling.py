@@ -9,11 +9,11 @@ of the same material around it.
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.grid.sampled import INSIDE
 from simulearn.material import Section
 
 Array = NDArray[np.float64]
 
-INSIDE = 0.9  # mm from a beam's end, or from its middle
 ACROSS = 1.5 / 8  # of the width from the edge
 DEEP = 0.5 / 4  # of the thickness from the surface
 

@@ -40,7 +40,7 @@ class Trial:
         beams: (F, B, 3, 4, 3) corners of the beams' sections at start, middle and end.
         stress: (F, B, 4, 4, 6) components 11 22 33 12 13 23 in global axes.
         seconds: time it took.
-        record: law, iterations a frame, halved increments, size.
+        record: law, iterations a frame, halved increments, motions of snaps, size.
         solid: the solid.
         displacements: (F, N, 3) of its nodes.
         stable: whether all frames are stable equilibria, as far as the solver can tell.
@@ -153,7 +153,10 @@ def simulate_grid(
         "corrections": problem.corrections,
         "halved": path.halved,
         "stable": stable,
-        "snaps": [[snap.released, snap.frame] for snap in path.snaps],
+        "snaps": [
+            {"released": snap.released, "frame": snap.frame, "motion_mm": motion}
+            for snap, motion in zip(path.snaps, path.motions, strict=True)
+        ],
         "bricks": len(problem.solid.bricks),
         "unknowns": int(3 * (len(problem.solid.nodes) - len(problem.solid.fixed))),
     }

@@ -86,6 +86,16 @@ class Shrinkage(_Data):
         return self.active * self.stress_joint / self.stress_active
 
     @property
+    def printed(self) -> dict[str, tuple[float, float, float]]:
+        """Printed-in stress of each kind of part along its beam, across it and up, MPa."""
+        return {
+            "joint": (self.stress_joint, self.stress_joint, 0.0),
+            "shell": (self.stress_shell, 0.0, 0.0),
+            "active": (self.stress_active, 0.0, 0.0),
+            "passive": (0.0, self.stress_passive, 0.0),
+        }
+
+    @property
     def stress_shell(self) -> float:
         """Printed-in stress of the shell (MPa), in the ratio of the released strains."""
         return self.stress_active * (self.shell / self.active if self.active else 1.0)

@@ -114,7 +114,6 @@ class Learned:
         if not (frames.converged[t] and np.isfinite(joints).all() and np.isfinite(sections).all()):
             message = f'the model "{self.bundle.card.name}" has no answer for this grid'
             return Failure(one.given, "no-answer", "grid", message, HINT)
-        stable, snaps = getattr(frames, "stable", None), getattr(frames, "snaps", None)
         return Result(
             grid=one.grid,
             engine=self.name,
@@ -124,9 +123,9 @@ class Learned:
             seconds=seconds,
             material=one.material.identity,
             model=self.bundle.identity,
-            stable=True if stable is None else bool(stable[t]),
+            stable=frames.stable is None or bool(frames.stable[t]),
             bound_mm=None if frames.bound_mm is None else float(frames.bound_mm[t]),
-            snaps=() if snaps is None else tuple(snaps[t]),
+            snaps=() if frames.snaps is None else tuple(frames.snaps[t]),
             warnings=(*one.warnings, *self._unlike(one.grid), *_left_balance(frames, t)),
             record={"kind": self.bundle.card.kind},
         )
@@ -172,8 +171,7 @@ def _loaded(path: Path, digest: str) -> Bundle:
 
 def _left_balance(frames: Frames, t: int) -> Iterator[Message]:
     """Yield a warning where a design has left an unstable balance."""
-    left = getattr(frames, "left_balance", None)
-    if left is not None and left[t]:
+    if frames.left_balance is not None and frames.left_balance[t]:
         yield Message(
             "unstable-balance",
             "grid",

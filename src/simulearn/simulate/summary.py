@@ -42,7 +42,7 @@ def summary(result: Result) -> dict[str, Any]:
 
 
 def remarks(result: Result) -> list[str]:
-    """Return a sentence for each thing that qualifies a result and that no warning says."""
+    """Return a sentence for each reason for caution that no warning says."""
     lines = []
     if not result.stable:
         lines.append("the shape is in unstable balance and may snap into another")
@@ -51,6 +51,4 @@ def remarks(result: Result) -> list[str]:
             f"the grid snaps at {snap.released:.1%} released (frame {snap.frame})"
             for snap in result.snaps
         ]
-    if result.bound_mm is not None:
-        lines.append(f"nine of ten such answers are off by less than {result.bound_mm:.2f} mm")
     return lines

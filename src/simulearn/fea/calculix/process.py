@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from simulearn.errors import ComputationError, InputError
+from simulearn.errors import Cancel, ComputationError, InputError, stop_if
 from simulearn.fea.calculix.output import last_error, read_sta
 
 # Words of messages by which CalculiX says that an increment, however short, did not converge.
@@ -34,6 +34,7 @@ class Ccx:
         threads: processors that it may use.
         timeout: seconds allowed in all.
         deadline: when they are over, by the monotonic clock.
+        cancel: token that stops it.
     """
 
     program: str
@@ -41,6 +42,7 @@ class Ccx:
     threads: int
     timeout: float | None
     deadline: float | None
+    cancel: Cancel | None = None
 
     def path(self, ending: str) -> Path:
         """Return the path of the deck ("inp") or of an output."""
@@ -55,6 +57,7 @@ class Ccx:
         Raises:
             NotConvergedError: an increment did not converge.
             ComputationError: CalculiX failed otherwise, or took too long.
+            CancelledError: the token said so.
         """
         for ending in ("sta", "dat"):
             self.path(ending).unlink(missing_ok=True)
@@ -93,12 +96,15 @@ class Ccx:
                     raise ComputationError(
                         f"CalculiX took longer than the {self.timeout:g} s allowed"
                     ) from None
+            stop_if(self.cancel)
             if watch is not None:
                 watch()
 
 
 @contextmanager
-def ccx(threads: int = 1, timeout: float | None = None) -> Iterator[Ccx]:
+def ccx(
+    threads: int = 1, timeout: float | None = None, cancel: Cancel | None = None
+) -> Iterator[Ccx]:
     """Yield CalculiX in a temporary folder.
 
     Raises:
@@ -110,7 +116,7 @@ def ccx(threads: int = 1, timeout: float | None = None) -> Iterator[Ccx]:
     folder = Path(tempfile.mkdtemp(prefix="simulearn-ccx-"))
     deadline = None if timeout is None else time.monotonic() + timeout
     try:
-        yield Ccx(program, folder, threads, timeout, deadline)
+        yield Ccx(program, folder, threads, timeout, deadline, cancel)
     finally:
         if not os.environ.get("SIMULEARN_KEEP"):
             shutil.rmtree(folder, ignore_errors=True)

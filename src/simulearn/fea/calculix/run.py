@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import InputError
+from simulearn.errors import Cancel, InputError
 from simulearn.fea.calculix import grown
 from simulearn.fea.calculix.brick import matching
 from simulearn.fea.calculix.process import Ccx, NotConvergedError, ccx
@@ -49,6 +49,7 @@ def calculix(
     progress: Progress | None = None,
     timeout: float | None = None,
     threads: int = 1,
+    cancel: Cancel | None = None,
 ) -> CalculixFrames:
     """Return the frames of a solid, computed by CalculiX.
 
@@ -59,10 +60,12 @@ def calculix(
         progress: called with the frames done and the frames in all.
         timeout: most seconds to wait.
         threads: processors that CalculiX may use.
+        cancel: token that stops it.
 
     Raises:
         InputError: CalculiX is not installed, or cannot take this mesh or law.
         ComputationError: it did not converge, crashed or took too long.
+        CancelledError: the token said so.
     """
     order = matching(solid.points)
     if (matching(solid.joint_points) != order).any():
@@ -70,7 +73,7 @@ def calculix(
     data = _data(material, law)
     begin = time.monotonic()
     told = _teller(progress)
-    with ccx(threads, timeout) as program:
+    with ccx(threads, timeout, cancel) as program:
         if isinstance(data, ElasticData) and data.kind == "st-venant-kirchhoff":
             steps, states = _grown(program, solid, data, material, told)
         else:

@@ -7,6 +7,7 @@ not say whether an equilibrium is stable either.
 import time
 from collections.abc import Callable
 
+from simulearn.errors import Cancel
 from simulearn.fea.calculix.run import Kind, calculix
 from simulearn.fea.kernels import entries
 from simulearn.fea.laws import law_of
@@ -26,6 +27,7 @@ def simulate_grid(
     law: Kind | None = None,
     progress: Callable[[int, int], None] | None = None,
     threads: int = 1,
+    cancel: Cancel | None = None,
 ) -> Trial:
     """Simulate a grid by CalculiX.
 
@@ -37,14 +39,16 @@ def simulate_grid(
         law: where it is not to be the material's own, with the same modulus and Poisson ratio.
         progress: called with (frames done, frames in all).
         threads: processors that CalculiX may use.
+        cancel: token that stops it within a fraction of a second.
 
     Raises:
         InputError: CalculiX is not installed, or cannot compute this mesh.
         ComputationError: CalculiX failed.
+        CancelledError: the token said so.
     """
     begun = time.perf_counter()
     solid = mesh(grid, material, layout)
-    frames = calculix(solid, material, law=law, progress=progress, threads=threads)
+    frames = calculix(solid, material, law=law, progress=progress, threads=threads, cancel=cancel)
     record = {"bricks": len(solid.bricks), **frames.record}
     bricks, _, _ = bricks_of(solid)
     law_, at = law_of(material.law), sample_points(solid)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from simulearn.dataset import Batch
 from simulearn.grid import Grid, outline
+from simulearn.grid.sampled import outer_is_active
 from simulearn.learn.common.model import Designs
 from simulearn.material import Material
 
@@ -48,11 +49,13 @@ def first_frame(designs: Designs) -> FirstFrame:
     ends = np.array([shape.beams for shape in shapes])  # (T, B, [start, end], [right, left], xy)
     side = np.array([shape.sides for shape in shapes])
     half = material.section.thickness / 2
+    axes = ends.mean(axis=3)
+    lengths = np.linalg.norm(axes[:, :, 1] - axes[:, :, 0], axis=-1)  # (T, B) between faces
     sections = np.stack([ends[:, :, 0], ends.mean(axis=2), ends[:, :, 1]], axis=2)
     return FirstFrame(
         joints=np.concatenate([_at(joints, -half), _at(joints, half)], axis=2),
         sections=np.concatenate([_at(sections, -half), _at(sections, half)], axis=3),
-        stress=_printed(designs, material),
+        stress=_printed(designs, material, lengths),
         # A start's right corner is the side's first, an end's its second: hand = end.
         modes=1 + 4 * side + 3 * np.arange(2),
     )
@@ -69,11 +72,10 @@ def _at(points: Array, z: float) -> Array:
     return np.concatenate([points, np.full((*points.shape[:-1], 1), z)], axis=-1)
 
 
-def _printed(designs: Designs, material: Material) -> Array:
+def _printed(designs: Designs, material: Material, lengths: Array) -> Array:
     """Return the printed-in stress; the sampled sections lie just inside ends and middle.
 
-    The active half is stressed along the beam, the other across it; an actuator lies amid its
-    beam, so that the outer sections are active only where it fills the beam.
+    The active half is stressed along the beam, the other across it.
     """
     ends = designs.flat[:, designs.beams]
     along = (ends[:, :, 1] - ends[:, :, 0]) / np.linalg.norm(
@@ -84,11 +86,12 @@ def _printed(designs: Designs, material: Material) -> Array:
     lengthwise = np.stack([c * c, s * s, none, c * s, none, none], axis=-1)
     crosswise = np.stack([s * s, c * c, none, -c * s, none, none], axis=-1)
     ratio = designs.actuators[:, :, None, None]
-    reaches = np.where([[True], [False], [False], [True]], abs(ratio) >= 1, ratio != 0)
+    outer = outer_is_active(ratio, lengths[:, :, None, None])
+    reaches = np.where([[True], [False], [False], [True]], outer, ratio != 0)
     active = reaches & (np.sign(ratio) == np.array([-1, -1, 1, 1]))
-    e = material.shrinkage
-    return np.where(
-        active[..., None],
-        e.stress_active * lengthwise[:, :, None, None],
-        e.stress_passive * crosswise[:, :, None, None],
-    )
+
+    def tensor(kind: str) -> Array:
+        along, across, _ = material.shrinkage.printed[kind]
+        return (along * lengthwise + across * crosswise)[:, :, None, None]
+
+    return np.where(active[..., None], tensor("active"), tensor("passive"))

@@ -283,12 +283,13 @@ def descend(
     name = sum(keep.stage.encode())
     for until in _rounds(done, stage.updates):
         begun, values = time.perf_counter(), []
+        frames = len(RELEASED)
         for k in range(done, until):
             rng = np.random.default_rng([seed, name, k])
             which = rng.integers(trials, size=stage.batch)
-            frame = rng.integers(11, size=stage.batch)
+            frame = rng.integers(frames, size=stage.batch)
             late = rng.random(stage.batch) < LATE
-            frame = np.where(late, rng.integers(9, 11, size=stage.batch), frame)
+            frame = np.where(late, rng.integers(frames - 2, frames, size=stage.batch), frame)
             run, now = update(run, *draw(which, frame))
             values.append(now)
             keep.report(None, k + 1, stage.updates)

@@ -7,12 +7,12 @@ was printed in and is not released yet, plus what the network says.
 import jax.numpy as jnp
 import numpy as np
 
+from simulearn.grid.sampled import outer_is_active
 from simulearn.material import Material
 from simulearn.mechanics.forces import FLIP, BeamState
 from simulearn.mechanics.poses import Array
 from simulearn.mechanics.topology import FlatGeometry, Topology
 
-INSIDE = 0.9  # mm from a half's end, where stress is sampled
 TENSOR = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where a component lies in 11 22 33 12 13 23
 VECTOR = (np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2]))
 SWAP = np.array([1, 0, 3, 2])  # right and left of a beam as its second half sees them
@@ -20,11 +20,11 @@ SWAP = np.array([1, 0, 3, 2])  # right and left of a beam as its second half see
 
 def printed(material: Material, geometry: FlatGeometry, ratio: Array) -> Array:
     """Return the printed-in stress of each half: (2, B, [face, middle], 4, 6) MPa, in its axes."""
-    along, across = material.shrinkage.stress_active, material.shrinkage.stress_passive
-    idle = jnp.array([0.0, across, 0, 0, 0, 0])
-    busy = jnp.array([along, 0.0, 0, 0, 0, 0])
-    reaches = (1 - jnp.abs(ratio)) / 2 * geometry.length < INSIDE
-    active = jnp.stack([reaches, ratio != 0], -1)  # (B, [face, middle])
+    stress = material.shrinkage.printed
+    idle, busy = (jnp.array([*stress[kind], 0, 0, 0]) for kind in ("passive", "active"))
+    active = jnp.stack(
+        [outer_is_active(ratio, geometry.length), ratio != 0], -1
+    )  # (B, [face, middle])
     top = jnp.array([False, False, True, True])
     here = active[..., None] & (top == (ratio > 0)[:, None, None])  # (B, 2, 4)
     return jnp.broadcast_to(jnp.where(here[..., None], busy, idle), (2, len(ratio), 2, 4, 6))

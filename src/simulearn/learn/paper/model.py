@@ -22,8 +22,9 @@ from simulearn.learn.paper.graph import Graph, Meetings, graph_of, meetings
 from simulearn.learn.paper.network import DoubleInteraction, Sizes, blank
 from simulearn.learn.paper.state import GraphState, state_of
 from simulearn.material import Material
+from simulearn.schedule import SCHEDULE
 
-STEPS = 10  # of stage 1
+STEPS = SCHEDULE.steps  # of stage 1
 NAMES = ("release", "creep")  # of the engines
 
 

@@ -14,6 +14,7 @@ from simulearn.dataset.features import edge_features, node_features
 from simulearn.learn.paper.graph import Pairs, graph_of
 from simulearn.learn.paper.network import Normalisers
 from simulearn.learn.paper.normaliser import fit, placed
+from simulearn.schedule import SCHEDULE
 
 STEPS_HELD = 0.99999  # of the variance of increments, by their components
 MOST = 200  # trials that suffice: each has tens of pairs in ten frames
@@ -40,8 +41,8 @@ def normalisers(
         few = batch.take(np.sort(rng.permutation(len(batch))[:count]))
         angles = rng.uniform(0, 2 * np.pi, count)
         drawn.append(turned(few, np.round(angles / (np.pi / 2)) * np.pi / 2 if aligned else angles))
-    return _stage(drawn, slice(0, 11), True, variance), _stage(
-        drawn, slice(10, 12), False, variance
+    return _stage(drawn, slice(0, SCHEDULE.steps + 1), True, variance), _stage(
+        drawn, slice(SCHEDULE.steps, SCHEDULE.frames), False, variance
     )
 
 
