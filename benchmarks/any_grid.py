@@ -49,18 +49,9 @@ def polygons(seed: int, count: int) -> Iterator[Grid]:
 
 
 def strips(seed: int, count: int) -> Iterator[Grid]:
-    """Yield chains of two to six beams, bent a little in the plane."""
-    random = np.random.default_rng(seed)
-    while count:
-        many = int(random.integers(2, 7))
-        turn = np.cumsum(random.uniform(-0.5, 0.5, many))
-        steps = random.uniform(40, 75, many)[:, None] * np.stack([np.cos(turn), np.sin(turn)], 1)
-        joints = np.vstack([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
-        beams = np.array([(k, k + 1) for k in range(many)])
-        grid = Grid(joints, beams, _ratios(random, many), 0)
-        if validate(grid, PLA).valid:
-            count -= 1
-            yield grid
+    """Yield strips one cell wide and three to seven long."""
+    for k in range(count):
+        yield draw_valid(Rules(cells=(3 + k % 5, 1)), seed, k)[0]
 
 
 def designed() -> Iterator[Grid]:
@@ -84,10 +75,12 @@ def main() -> None:
     kinds = {name: drawn(rules, given.seed, given.designs) for name, rules in KINDS.items()}
     kinds |= {
         "rings of 3 to 8 beams": polygons(given.seed, given.designs),
-        "strips of 2 to 6 beams": strips(given.seed, given.designs),
+        "strips of 3 to 7 cells": strips(given.seed, given.designs),
         "library, 1 x 1 to 4 x 4": designed(),
     }
     model = bundle_of("default").model
+    flat = make("flat")
+    model.rollout(Designs(flat.beams, flat.fixed, flat.joints[None], flat.actuators[None]))
     rows = []
     for name, grids in kinds.items():
         total = failed = snapped = left = 0

@@ -16,7 +16,8 @@ from simulearn.mechanics.stiffness import exact_stiffness
 from simulearn.mechanics.topology import Topology, flat_geometry, topologies
 
 PLA = load_material("pla-hot-water")
-LOAD = loads(PLA)
+with jax.enable_x64(True):
+    LOAD = loads(PLA)
 
 
 def chain(count, length, stiffness, angle=0.0):
