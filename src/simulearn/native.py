@@ -36,7 +36,8 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
     def decorate(function: Callable[..., Any]) -> Any:
         # Wrappers for callers that a kernel does not have would only take time to compile.
         wrappers = {"no_cfunc_wrapper": True, "no_cpython_wrapper": not entry}
-        compile_ = numba.njit(nogil=True, error_model="numpy", **wrappers, **options)(function)
+        settings: Any = {"nogil": True, "error_model": "numpy", **wrappers, **options}
+        compile_: Any = numba.njit(**settings)(function)
         kept_in = _folder(Path(function.__code__.co_filename).parent) if entry else None
         if kept_in is not None:
             with _decorating:  # Numba asks a setting of the whole process for the folder

@@ -1,0 +1,66 @@
+"""Compare where designs snap: the finite elements and the learned simulator.
+
+The designs are those of `snapping.json`: random ones that the learned simulator snaps.
+
+    python benchmarks/snaps.py [--designs 20]
+"""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from report import Report
+from simulearn.grid import Rules, draw_valid
+from simulearn.simulate import Result, engine
+
+DESIGNS = Path(__file__).parent / "snapping.json"
+RELEASED = 0.03  # of the stress, by which the first snap may differ
+APART = 0.02  # of the dimension, by which the last shape may differ in the mean
+
+
+def first(result: Any) -> float | None:
+    """Return the released fraction at the first snap."""
+    return result.snaps[0].released if result.snaps else None
+
+
+def percent(x: float | None) -> str:
+    """Return a fraction as text."""
+    return "-" if x is None else f"{100 * x:.1f} %"
+
+
+def main() -> None:
+    """Compare and report."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--designs", type=int, default=1000)
+    given = parser.parse_args()
+    solid, learned = engine("fea"), engine("learned")
+    rows, alike = [], 0
+    for design in json.loads(DESIGNS.read_text())[: given.designs]:
+        grid, _ = draw_valid(Rules(**design["rules"]), design["seed"], design["k"])
+        (theirs,), (ours,) = solid.simulate([grid]), learned.simulate([grid])
+        name = f"{design['kind']}, {design['seed']}/{design['k']}"
+        if not (isinstance(theirs, Result) and isinstance(ours, Result)):
+            rows.append((name, "no answer", "no answer", "-", "no"))
+            continue
+        away = np.linalg.norm(theirs.joints[-1] - ours.joints[-1], axis=-1).mean() / grid.dimension
+        a, b = first(theirs), first(ours)
+        same = a is not None and b is not None and abs(a - b) <= RELEASED and away <= APART
+        alike += same
+        rows.append((name, percent(a), percent(b), percent(float(away)), "yes" if same else "no"))
+        print(*rows[-1], flush=True)
+    report = Report("snaps", "Designs that snap")
+    report.say(
+        f"{alike} of {len(rows)} random designs that snap in the learned simulator do so in the "
+        f"finite elements within {RELEASED:.0%} of the release, with last shapes within "
+        f"{APART:.0%} of the dimension."
+    )
+    head = ["design", "finite elements snap at", "learned at", "last shapes apart", "alike"]
+    report.table(head, rows)
+    report.save()
+
+
+if __name__ == "__main__":
+    main()
