@@ -302,8 +302,12 @@ def _small_steps(grid: Grid, frames: Frames, k: int, path: Path, tolerance: floa
             balanced = bool(unstable and moved <= allowed)
             if balanced:
                 short.R[0], short.p[0] = short.R[1], short.p[1]
-            if not find(True, SHOVE if balanced else 0.0) and not find(True, SHOVE):
-                return False
+            tries = (SHOVE, 10 * SHOVE) if balanced else (0.0, SHOVE)
+            if not any(find(True, shove) for shove in tries):
+                if not balanced or to == 1:
+                    return False
+                at, step = to, SMALLEST  # so nearly neutral that it is left where it is less so
+                continue
             path.left_balance |= balanced
             path.jumped[k] = True
             moved = float(short.info[1, MOVED])

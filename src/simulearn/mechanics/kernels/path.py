@@ -220,8 +220,8 @@ def follow(
         if frames.corrected:  # twists are from the rest that the section model has
             set_half_beams(
                 space.half_beams, space.rest, section, layout.ends, layout.fixed,
-                geometry.length, ratio, geometry.face, geometry.frame, s,
-                frames.corrections[k], k < 0,
+                geometry.length, ratio, geometry.face, geometry.frame, s, frames.corrections[k],
+                k < 0,
             )  # fmt: skip
         half_twists(layout, space.rest, geometry, section, s, R[k], p[k], twists[k])
         plain = motion <= tolerance[k] and negative == 0
