@@ -20,7 +20,8 @@ from simulearn.mechanics.poses import (
 RNG = np.random.default_rng(0)
 TURNS = RNG.normal(size=(50, 3))
 TURNS *= (RNG.uniform(0, 2.0, 50) / np.linalg.norm(TURNS, axis=1))[:, None]
-TWISTS = jnp.asarray(np.concatenate([RNG.normal(size=(50, 3)) * 20, TURNS], axis=1))
+with jax.enable_x64(True):
+    TWISTS = jnp.asarray(np.concatenate([RNG.normal(size=(50, 3)) * 20, TURNS], axis=1))
 
 
 def test_rotations_are_those_of_their_vectors():
