@@ -164,18 +164,21 @@ def test_increments_are_given_by_their_components(sample):
 
 
 def test_the_gradient_of_a_rollout_is_that_of_finite_differences(model, designs):
-    one = designs.take([0])
-    first = first_frame(one)
-    double = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), model)
-    shape = graph_of(one.beams, one.flat.shape[1], one.fixed)
-    meet = meetings(one.beams, first.modes)
-    state = state_of(first.joints, first.sections, first.stress)
-    state = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), state)
-    ratio = jnp.asarray(one.actuators.T[..., None])
+    with jax.enable_x64(True):
+        one = designs.take([0])
+        first = first_frame(one)
+        double = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), model)
+        shape = graph_of(one.beams, one.flat.shape[1], one.fixed)
+        meet = meetings(one.beams, first.modes)
+        state = state_of(first.joints, first.sections, first.stress)
+        state = jax.tree.map(lambda x: jnp.asarray(x, jnp.float64), state)
+        ratio = jnp.asarray(one.actuators.T[..., None])
 
-    @jax.jit
-    def height(corners):
-        frames, crept = frames_after(double, state._replace(sections=corners), ratio, shape, meet)
-        return (crept.joints[..., 2::3] ** 2).mean() + (frames.stress**2).mean()
+        @jax.jit
+        def height(corners):
+            frames, crept = frames_after(
+                double, state._replace(sections=corners), ratio, shape, meet
+            )
+            return (crept.joints[..., 2::3] ** 2).mean() + (frames.stress**2).mean()
 
-    gradient_is_that_of_finite_differences(height, state.sections)
+        gradient_is_that_of_finite_differences(height, state.sections)
