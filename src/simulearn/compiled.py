@@ -1,4 +1,4 @@
-"""How JAX is used: double precision around each call, kernels kept between runs where asked.
+"""How JAX is used: double precision around each call, kernels kept between runs.
 
 Importing this changes nothing. Library code runs JAX in double precision through
 `double_precision`. A program that owns its process calls `keep_kernels`, so that only the first

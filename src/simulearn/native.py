@@ -38,11 +38,11 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
         wrappers = {"no_cfunc_wrapper": True, "no_cpython_wrapper": not entry}
         settings: Any = {"nogil": True, "error_model": "numpy", **wrappers, **options}
         compile_: Any = numba.njit(**settings)(function)
-        kept_in = _folder(Path(function.__code__.co_filename).parent) if entry else None
-        if kept_in is not None:
+        folder = _folder(Path(function.__code__.co_filename).parent) if entry else None
+        if folder is not None:
             with _decorating:  # Numba asks a setting of the whole process for the folder
                 before = _settings.CACHE_DIR
-                _settings.CACHE_DIR = str(kept_in)
+                _settings.CACHE_DIR = str(folder)
                 try:
                     compile_.enable_caching()
                 except (RuntimeError, OSError):
@@ -55,23 +55,23 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
 
 
 @contextmanager
-def on_compile(tell: Callable[[], None]) -> Iterator[None]:
-    """Call `tell` once, when a kernel has to be compiled while the context lasts."""
-    listener = _Listener(tell)
+def on_compile(notify: Callable[[], None]) -> Iterator[None]:
+    """Call `notify` once, when a kernel has to be compiled while the context lasts."""
+    listener = _Listener(notify)
     with event.install_listener("numba:compile", listener):
         yield
 
 
 class _Listener(event.Listener):
-    """Tells of the first compilation only."""
+    """Notifies of the first compilation only."""
 
-    def __init__(self, tell: Callable[[], None]) -> None:
-        self._tell: Callable[[], None] | None = tell
+    def __init__(self, notify: Callable[[], None]) -> None:
+        self._notify: Callable[[], None] | None = notify
 
     def on_start(self, event: Any) -> None:
-        tell, self._tell = self._tell, None
-        if tell is not None:
-            tell()
+        notify, self._notify = self._notify, None
+        if notify is not None:
+            notify()
 
     def on_end(self, event: Any) -> None:
         pass

@@ -16,7 +16,7 @@ from simulearn.fea.calculix.growth import initial_strain, orthotropic, uniform
 from simulearn.fea.calculix.output import read_dat, read_sta
 from simulearn.fea.calculix.process import Ccx
 from simulearn.fea.calculix.schedule import Step
-from simulearn.fea.calculix.state import StepResult, Told
+from simulearn.fea.calculix.state import Report, StepResult
 from simulearn.fea.solid import Solid
 from simulearn.material import ElasticData
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 
 def solve(
-    ccx: Ccx, solid: Solid, law: ElasticData, steps: Sequence[Step], told: Told
+    ccx: Ccx, solid: Solid, law: ElasticData, steps: Sequence[Step], report: Report
 ) -> list[StepResult]:
     """Return the state at the end of each step.
 
@@ -33,7 +33,7 @@ def solve(
         solid: the solid; one growth in each brick.
         law: modulus and Poisson ratio of the St Venant-Kirchhoff law.
         steps: what to compute.
-        told: called with each step that is done.
+        report: called with each step that is done.
 
     Raises:
         InputError: growth varies inside a brick.
@@ -48,10 +48,10 @@ def solve(
 
     def watch() -> None:
         if done := read_sta(ccx.path("sta")):
-            told(steps[: done[-1][0] - 1])  # the last one listed may still be under way
+            report(steps[: done[-1][0] - 1])  # the last one listed may still be under way
 
     ccx.run(watch)
-    told(steps)
+    report(steps)
     moves, stresses = read_dat(ccx.path("dat"), len(solid.nodes), len(solid.bricks))
     if not len(moves) == len(stresses) == len(steps):
         raise ComputationError(f"CalculiX wrote {len(moves)} of {len(steps)} steps")
@@ -66,20 +66,20 @@ def _material(
 ) -> Iterable[str]:
     """One section for each pair of printing direction and growth, one material for each growth."""
     kinds, kind = np.unique(growth, axis=0, return_inverse=True)
-    ways, way = np.unique(angle, return_inverse=True)
+    directions, direction = np.unique(angle, return_inverse=True)
     for k, values in enumerate(kinds):
         yield f"*MATERIAL, NAME=GROWTH{k}\n*ELASTIC, TYPE=ORTHO\n"
         for s in sorted({0.0, *releases}):
             constants = orthotropic(law, values, s)
             yield f"{deck.numbers(constants[:8])},\n{deck.numbers([constants[8], s])}\n"
         yield deck.DENSITY
-    for k, turn in enumerate(ways):
+    for k, turn in enumerate(directions):
         c, s = np.cos(turn), np.sin(turn)
-        yield f"*ORIENTATION, NAME=WAY{k}\n{deck.numbers([c, s, 0, -s, c, 0])}\n"
-    pairs, pair = np.unique(np.column_stack([kind.ravel(), way]), axis=0, return_inverse=True)
+        yield f"*ORIENTATION, NAME=DIRECTION{k}\n{deck.numbers([c, s, 0, -s, c, 0])}\n"
+    pairs, pair = np.unique(np.column_stack([kind.ravel(), direction]), axis=0, return_inverse=True)
     for k, (g, w) in enumerate(pairs):
         yield from deck.elements(f"SET{k}", np.flatnonzero(pair.ravel() == k))
-        yield f"*SOLID SECTION, ELSET=SET{k}, MATERIAL=GROWTH{g}, ORIENTATION=WAY{w}\n"
+        yield f"*SOLID SECTION, ELSET=SET{k}, MATERIAL=GROWTH{g}, ORIENTATION=DIRECTION{w}\n"
     yield "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNODES, 0.\n"
     yield "*INITIAL CONDITIONS, TYPE=PLASTIC STRAIN\n"  # zeros that later increases add to
     yield from deck.strains(np.zeros((len(angle), 8, 6)))

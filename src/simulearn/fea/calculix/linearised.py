@@ -21,7 +21,7 @@ from simulearn.fea.calculix.moduli import COLUMN, ROW, moduli_of
 from simulearn.fea.calculix.output import read_dat, read_sta
 from simulearn.fea.calculix.process import Ccx, NotConvergedError
 from simulearn.fea.calculix.schedule import Step
-from simulearn.fea.calculix.state import StepResult, Told
+from simulearn.fea.calculix.state import Report, StepResult
 from simulearn.fea.kernels.law import ConstitutiveLaw
 from simulearn.fea.points import bricks_of
 from simulearn.fea.solid import Solid
@@ -39,7 +39,7 @@ MOST_HALVINGS = 4
 
 
 def solve(
-    ccx: Ccx, solid: Solid, law: ConstitutiveLaw, steps: Sequence[Step], told: Told
+    ccx: Ccx, solid: Solid, law: ConstitutiveLaw, steps: Sequence[Step], report: Report
 ) -> list[StepResult]:
     """Return the state at the end of each step.
 
@@ -48,7 +48,7 @@ def solve(
         solid: the solid.
         law: its constitutive law.
         steps: what to compute.
-        told: called with the steps that are done.
+        report: called with the steps that are done.
 
     Raises:
         InputError: the solid's integration points are not CalculiX's.
@@ -59,7 +59,7 @@ def solve(
     states = []
     for k, step in enumerate(steps):
         states.append(_advance(problem, past, step, MOST_HALVINGS))
-        told(steps[: k + 1])
+        report(steps[: k + 1])
     return states
 
 

@@ -72,15 +72,15 @@ def calculix(
         raise InputError("CalculiX needs the integration points of joints in the order of beams")
     data = _data(material, law)
     begin = time.monotonic()
-    told = _teller(progress)
+    report = _reporter(progress)
     with ccx(threads, timeout, cancel) as program:
         if isinstance(data, ElasticData) and data.kind == "st-venant-kirchhoff":
-            steps, states = _grown(program, solid, data, material, told)
+            steps, states = _grown(program, solid, data, material, report)
         else:
             from simulearn.fea.calculix import linearised  # with JAX, which nothing else needs here
 
             steps = schedule(material)
-            states = linearised.solve(program, solid, law_of(data), steps, told)
+            states = linearised.solve(program, solid, law_of(data), steps, report)
     kept = [k for k, step in enumerate(steps) if step.frame is not None]
     moves = [states[k].displacements for k in kept]
     stresses = [states[k].stress[:, order] for k in kept]
@@ -113,31 +113,31 @@ def _grown(
     solid: Solid,
     data: ElasticData,
     material: Material,
-    told: Callable[[Sequence[Step]], None],
+    report: Callable[[Sequence[Step]], None],
 ) -> tuple[list[Step], list[StepResult]]:
     """Solve in one run, with smaller steps where larger ones do not converge."""
     for parts in PARTS:
         steps = schedule(material, parts)
         try:
-            return steps, grown.solve(program, solid, data, steps, told)
+            return steps, grown.solve(program, solid, data, steps, report)
         except NotConvergedError:
             if parts == PARTS[-1]:
                 raise
     raise AssertionError
 
 
-def _teller(progress: Progress | None) -> Callable[[Sequence[Step]], None]:
+def _reporter(progress: Progress | None) -> Callable[[Sequence[Step]], None]:
     """Return a function of the steps that are done that reports every frame once."""
     reported = 0
 
-    def told(steps: Sequence[Step]) -> None:
+    def report(steps: Sequence[Step]) -> None:
         nonlocal reported
         frame = max([step.frame or 0 for step in steps], default=0)
         if progress is not None and frame > reported:
             reported = frame
             progress(frame + 1, FRAMES)
 
-    return told
+    return report
 
 
 def _per_frame(steps: Sequence[Step], counts: Sequence[int]) -> list[int]:

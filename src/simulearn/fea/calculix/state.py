@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from simulearn.fea.calculix.schedule import Step
 
-Told = Callable[[Sequence[Step]], None]  # called with the steps that are done
+Report = Callable[[Sequence[Step]], None]  # called with the steps that are done
 
 
 @dataclass(frozen=True, eq=False)
