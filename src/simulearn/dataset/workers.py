@@ -38,6 +38,8 @@ def local_workers(processes: int, longest: float = LONGEST) -> Iterator[Workers]
     from pebble import ProcessPool
 
     pool = ProcessPool(processes, initializer=_begin, context=get_context("spawn"))
+    with _no_interrupts():
+        assert pool.active  # its threads start now, and hand on to workers what is blocked here
     try:
         yield Workers(
             lambda job: pool.schedule(run, args=(job,), timeout=longest), lambda: processes
@@ -73,6 +75,22 @@ def cluster_workers(address: str) -> Iterator[Workers]:
         )
     finally:
         client.close()
+
+
+@contextmanager
+def _no_interrupts() -> Iterator[None]:
+    """Block Ctrl-C in threads and processes that start meanwhile; this thread gets it as before.
+
+    A worker would otherwise meet it in its first second, before `_begin` leaves it to the parent.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _begin() -> None:
