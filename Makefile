@@ -38,6 +38,9 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/print_time.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/learned.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/learned_speed.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/waiting.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/any_grid.py --designs 2000
+	$(ONE_THREAD) $(BIN)/python benchmarks/snaps.py --designs 20
 	$(ONE_THREAD) $(BIN)/python benchmarks/curve.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/inverse.py
 
