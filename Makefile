@@ -7,7 +7,8 @@ BIN := $(VENV)/bin
 ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	XLA_FLAGS="--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 # What must hold with every version of Python: grids, both solvers, engines.
-CORE := tests/material tests/grid tests/mechanics tests/simulate tests/test_native.py
+CORE := tests/material tests/grid tests/simulate tests/fea/test_trial.py tests/mechanics/test_poses.py \
+	tests/mechanics/test_topology.py tests/test_native.py tests/test_api.py
 
 .PHONY: demo test test-core lint bench pictures clean
 
