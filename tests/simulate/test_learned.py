@@ -8,11 +8,11 @@ import pytest
 
 import synthetic
 from simulearn.errors import CancelledError
-from simulearn.grid import TrainingRange, make
+from simulearn.grid import Rules, TrainingRange, draw_valid, make
 from simulearn.learn.common.model import Designs
 from simulearn.material import Identity, load_material
 from simulearn.schedule import Snap
-from simulearn.simulate import Failure, Result, learned
+from simulearn.simulate import Failure, Result, engine, learned
 from simulearn.simulate.learned import Learned
 
 PLA = load_material("pla-hot-water")
@@ -66,7 +66,7 @@ def test_what_the_model_knows_of_its_answer_is_in_the_result(simulator):
     assert failure.code == "no-answer"
     assert (plain.stable, plain.snaps, plain.warnings) == (True, (), ())
     assert (doubtful.stable, doubtful.snaps) == (False, (Snap(0.9, 9),))
-    assert [message.code for message in doubtful.warnings] == ["unstable-balance"]
+    assert [message.code for message in doubtful.warnings] == ["unstable-balance", "bound-after-snap"]
     assert plain.bound_mm == 0.3
     assert plain.model.name == "formula"
 
@@ -107,3 +107,13 @@ def test_large_batches_are_divided_and_a_token_stops_between_them(simulator, mon
         simulator.simulate([make("saddle", length=60.0)] * 7, progress, token)
     assert simulator.bundle.model.batches == [2, 2]
     assert done == [24, 48]
+
+
+def test_a_bound_does_not_speak_of_what_follows_a_snap():
+    grid, _ = draw_valid(Rules(), 9000, 3876)
+    (result,) = engine("learned").simulate([grid])
+    assert result.snaps
+    assert 0.7 < result.snaps[0].released < 0.95  # finite elements: .84
+    assert result.stable
+    assert result.bound_mm is None
+    assert "bound-after-snap" in [warning.code for warning in result.warnings]

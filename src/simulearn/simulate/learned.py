@@ -14,9 +14,10 @@ from simulearn.grid import Grid, TrainingRange, make
 from simulearn.learn.common.bundle import Bundle, bundle_of
 from simulearn.learn.common.model import Designs, Frames, last_frame
 from simulearn.material import Material
+from simulearn.schedule import FRAMES, Snap
 from simulearn.simulate.checked import Checked, check_all
 from simulearn.simulate.engines import in_order
-from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
+from simulearn.simulate.result import Failure, Outcome, Result
 from simulearn.simulate.simulator import Progress
 
 BATCH = 256  # designs in one call of the model, so that memory stays bounded
@@ -114,6 +115,9 @@ class Learned:
         if not (frames.converged[t] and np.isfinite(joints).all() and np.isfinite(sections).all()):
             message = f'the model "{self.bundle.card.name}" has no answer for this grid'
             return Failure(one.given, "no-answer", "grid", message, HINT)
+        snaps = () if frames.snaps is None else tuple(frames.snaps[t])
+        # The bound was fitted to designs that do not snap.
+        bound = None if snaps or frames.bound_mm is None else float(frames.bound_mm[t])
         return Result(
             grid=one.grid,
             engine=self.name,
@@ -124,9 +128,14 @@ class Learned:
             material=one.material.identity,
             model=self.bundle.identity,
             stable=frames.stable is None or bool(frames.stable[t]),
-            bound_mm=None if frames.bound_mm is None else float(frames.bound_mm[t]),
-            snaps=() if frames.snaps is None else tuple(frames.snaps[t]),
-            warnings=(*one.warnings, *self._unlike(one.grid), *_left_balance(frames, t)),
+            bound_mm=bound,
+            snaps=snaps,
+            warnings=(
+                *one.warnings,
+                *self._unlike(one.grid),
+                *_left_balance(frames, t),
+                *_after_snap(snaps),
+            ),
             record={"kind": self.bundle.card.kind},
         )
 
@@ -177,6 +186,17 @@ def _left_balance(frames: Frames, t: int) -> Iterator[Message]:
             "grid",
             "the grid stood on an unstable balance and left it along its softest mode; the "
             "mirrored shape is as likely",
+        )
+
+
+def _after_snap(snaps: Sequence[Snap]) -> Iterator[Message]:
+    """Yield a warning where a design snaps: the error of the shape after it is not estimated."""
+    if snaps:
+        yield Message(
+            "bound-after-snap",
+            "grid",
+            "the grid snaps, and how far off the shape after a snap may be is not estimated; "
+            "simulate it by finite elements",
         )
 
 
