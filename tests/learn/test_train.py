@@ -136,11 +136,11 @@ def test_ctrl_c_leaves_a_run_that_goes_on(small, sample_file, tmp_path):
     process = subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ}
     )
-    deadline = time.monotonic() + 120
+    deadline = time.monotonic() + 400  # compiling takes long beside other work
     while not (folder / "loss.csv").exists() and time.monotonic() < deadline:
         time.sleep(0.1)
     process.send_signal(signal.SIGINT)
-    assert "the same command goes on" in process.communicate(timeout=60)[1]
+    assert "the same command goes on" in process.communicate(timeout=300)[1]
     assert process.returncode == 130
     rows = checkpoint.header(folder / "checkpoint.safetensors")["rows"]
     assert 1 <= len(rows) < 500
