@@ -66,7 +66,8 @@ def test_what_the_model_knows_of_its_answer_is_in_the_result(simulator):
     assert failure.code == "no-answer"
     assert (plain.stable, plain.snaps, plain.warnings) == (True, (), ())
     assert (doubtful.stable, doubtful.snaps) == (False, (Snap(0.9, 9),))
-    assert [message.code for message in doubtful.warnings] == ["unstable-balance", "bound-after-snap"]
+    codes = [message.code for message in doubtful.warnings]
+    assert codes == ["unstable-balance", "bound-after-snap"]
     assert plain.bound_mm == 0.3
     assert plain.model.name == "formula"
 
