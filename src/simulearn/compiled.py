@@ -1,11 +1,10 @@
-"""How JAX is used: double precision around each call, kernels kept between runs.
+"""How JAX is used: double precision around each call, and room for its kernels in memory.
 
 Importing this changes nothing. Library code runs JAX in double precision through
-`double_precision`. A program that owns its process calls `keep_kernels`, so that only the first
-use on a machine waits for the compiler; JAX_COMPILATION_CACHE_DIR names another folder.
+`double_precision`. A program that owns its process, such as the command line, may name a folder for
+compiled kernels by JAX's own variable JAX_COMPILATION_CACHE_DIR.
 """
 
-import os
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -13,8 +12,6 @@ from typing import ParamSpec, TypeVar
 
 import jax
 import jax.monitoring
-
-from simulearn.files import cache_folder
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -33,21 +30,6 @@ def double_precision(function: Callable[P, T]) -> Callable[P, T]:
             return function(*args, **kwargs)
 
     return wrapped
-
-
-def keep_kernels() -> None:
-    """Keep kernels that this process compiles in the user's cache folder, for the next one."""
-    base = cache_folder()
-    if base is None or "JAX_COMPILATION_CACHE_DIR" in os.environ:
-        return
-    folder = base / "compiled"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return
-    if os.access(folder, os.W_OK):  # else every run compiles for itself
-        jax.config.update("jax_compilation_cache_dir", str(folder))
-        jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.2)
 
 
 class _Made:

@@ -134,7 +134,7 @@ def fitting_slopes(
         designs: of one topology.
         goals: what the error is of.
         soft: mm; a distance d counts as sqrt(d2 + soft2) - soft.
-        tolerance: of the simulation, mm; see `learn.slopes`.
+        tolerance: of the simulation, mm; see `learn.equilibrium.slopes`.
     """
     pick = goals.matrix(designs.flat.shape[1], len(designs.beams))
     given = (pick, goals.targets, goals.weights, soft)
@@ -142,7 +142,7 @@ def fitting_slopes(
 
 
 def soft_error(joints: Any, sections: Any, given: Any) -> Any:
-    """Return the softened weighted mean distance, as `learn.slopes` asks for it."""
+    """Return the softened weighted mean distance, as `learn.equilibrium.slopes` needs it."""
     pick, targets, weights, soft = given
     points = pick @ jnp.concatenate([joints.reshape(-1, 3), sections.reshape(-1, 3)])
     away = ((points - targets) ** 2).sum(-1)
