@@ -1,0 +1,90 @@
+"""Results as one binary message, so that a browser draws them without parsing text.
+
+The message is `SLF1`, the length of a header (uint32), the header (JSON, padded with blanks to a
+multiple of four bytes), and float32 numbers; all little-endian. The header has one entry for each
+design: what qualifies its result, and where its arrays begin, counted in numbers.
+"""
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.grid import Grid, validate
+from simulearn.grid.cleaning import kept
+from simulearn.material import load_material
+from simulearn.simulate import Failure, Outcome, Result, remarks, summary
+from simulearn.simulate.resultfile import failure_to_dict
+
+MAGIC = b"SLF1"
+SCHEMA = "simulearn.frames/1"
+MEDIA_TYPE = "application/vnd.simulearn.frames"
+
+
+def to_bytes(grids: Sequence[Grid], outcomes: Sequence[Outcome]) -> bytes:
+    """Return outcomes as a binary message.
+
+    Args:
+        grids: the designs as they were given; entries of the header are numbered by them.
+        outcomes: of each.
+    """
+    arrays: list[NDArray[np.float32]] = []
+    entries, start = [], 0
+    for grid, outcome in zip(grids, outcomes, strict=True):
+        if isinstance(outcome, Failure):
+            entries.append(_failure(grid, outcome))
+            continue
+        entry = _result(grid, outcome)
+        parts = {"joints": outcome.joints, "beams": outcome.beams}
+        if outcome.stress is not None:
+            parts["mises"] = mises(outcome.stress)
+        entry["arrays"] = {}
+        for name, values in parts.items():
+            entry["arrays"][name] = {"start": start, "shape": list(values.shape)}
+            arrays.append(values.astype("<f4"))
+            start += values.size
+        entries.append(entry)
+    header = json.dumps({"schema": SCHEMA, "results": entries}, allow_nan=False).encode()
+    header += b" " * (-len(header) % 4)
+    numbers = [np.ascontiguousarray(a).tobytes() for a in arrays]
+    return b"".join([MAGIC, struct.pack("<I", len(header)), header, *numbers])
+
+
+def mises(stress: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the equivalent stress (von Mises), MPa, of components 11 22 33 12 13 23 (..., 6)."""
+    a, b, c, ab, ac, bc = np.moveaxis(stress, -1, 0)
+    square = ((a - b) ** 2 + (b - c) ** 2 + (c - a) ** 2) / 2 + 3 * (ab**2 + ac**2 + bc**2)
+    equivalent: NDArray[np.float64] = np.sqrt(square)
+    return equivalent
+
+
+def _result(grid: Grid, result: Result) -> dict[str, Any]:
+    joints, beams = kept(grid.beams, len(grid.joints))
+    return {
+        "ok": True,
+        "engine": result.engine,
+        **summary(result),
+        "remarks": remarks(result),
+        "joint_numbers": np.flatnonzero(joints).tolist(),
+        "beam_numbers": np.flatnonzero(beams).tolist(),
+        "net_lengths": _net_lengths(grid),
+    }
+
+
+def _failure(grid: Grid, failure: Failure) -> dict[str, Any]:
+    return {
+        "ok": False,
+        **failure_to_dict(failure),
+        "errors": [asdict(message) for message in failure.invalid],
+        "net_lengths": {} if failure.code == "material" else _net_lengths(grid),
+    }
+
+
+def _net_lengths(grid: Grid) -> dict[int, float]:
+    """Return the length between its joints, mm, of each beam that has an outline."""
+    report = validate(grid, load_material(grid.material))
+    return {b: round(length, 3) for b, length in report.net_lengths.items()}

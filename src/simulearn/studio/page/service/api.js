@@ -1,0 +1,97 @@
+// Questions to the server. Every function returns what was asked for, or throws a Problem.
+
+import { MEDIA_TYPE, parseFrames } from "./frames.js";
+
+/** Why the server did not answer a question; `code` and `where` are for programs. */
+export class Problem extends Error {
+  constructor({ status = 0, code = "", where = "", detail = "", errors = [] }) {
+    super(detail);
+    Object.assign(this, { status, code, where, errors });
+  }
+
+  /** Whether the server was not reached at all. */
+  get offline() {
+    return this.status === 0;
+  }
+}
+
+async function request(path, { method = "GET", body, accept = "application/json", signal } = {}) {
+  let response;
+  try {
+    response = await fetch(path, {
+      method,
+      signal,
+      headers: { Accept: accept, ...(body === undefined ? {} : { "Content-Type": "application/json" }) },
+      body: body === undefined ? undefined : JSON.stringify(body),
+    });
+  } catch (error) {
+    if (error.name === "AbortError") throw error;
+    throw new Problem({ detail: "The server does not answer.", code: "offline" });
+  }
+  if (response.ok) return response;
+  let problem = {};
+  try {
+    problem = await response.json();
+  } catch {
+    problem = { detail: `The server answered with status ${response.status}.` };
+  }
+  throw new Problem({ ...problem, status: response.status });
+}
+
+const json = async (path, options) => (await request(path, options)).json();
+const post = (path, body, signal) => json(path, { method: "POST", body, signal });
+
+export const version = () => json("/api/version");
+export const library = () => json("/api/library");
+export const materials = () => json("/api/materials");
+export const printers = () => json("/api/printers");
+
+/** Return the results of grids, as `parseFrames` gives them. */
+export async function simulate(grids, { engine = "learned", signal } = {}) {
+  const response = await request("/api/simulate", {
+    method: "POST", body: { grids, engine }, accept: MEDIA_TYPE, signal,
+  });
+  return parseFrames(await response.arrayBuffer());
+}
+
+export const rank = (task, signal) => post("/api/rank", task, signal);
+export const toolpath = (grids, printer, signal) => post("/api/toolpath", { grids, printer }, signal);
+export const gcode = (grids, printer, names) => post("/api/gcode", { grids, printer, names });
+
+export const startOptimize = (task) => post("/api/optimize", task);
+export const startFea = (grids) => post("/api/fea", { grids });
+export const job = (id, signal) => json(`/api/jobs/${id}`, { signal });
+export const cancelJob = (id) => request(`/api/jobs/${id}`, { method: "DELETE" });
+
+/** Return the results of a job that is done, as `parseFrames` gives them. */
+export async function jobFrames(id) {
+  const response = await request(`/api/jobs/${id}/frames`, { accept: MEDIA_TYPE });
+  return parseFrames(await response.arrayBuffer());
+}
+
+export const loadDocument = (id) => json(`/api/documents/${id}`);
+export const saveDocument = (id, revision, document) =>
+  json(`/api/documents/${id}`, { method: "PUT", body: { revision, document } });
+
+/** Return {grid, goals, name, messages} of a file that the user opens. */
+export async function openFile(file) {
+  let response;
+  try {
+    response = await fetch(`/api/open?name=${encodeURIComponent(file.name)}`, {
+      method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file,
+    });
+  } catch {
+    throw new Problem({ detail: "The server does not answer.", code: "offline" });
+  }
+  const answer = await response.json();
+  if (!response.ok) throw new Problem({ ...answer, status: response.status });
+  return answer;
+}
+
+/** Return a file of a result: a Blob and its name. */
+export async function exportFile(grid, format, { engine = "learned", name = "grid" } = {}) {
+  const response = await request("/api/export", {
+    method: "POST", body: { grid, format, engine, name }, accept: "*/*",
+  });
+  return { blob: await response.blob(), name: `${name}${format}` };
+}

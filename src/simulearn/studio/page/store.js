@@ -1,0 +1,95 @@
+// The state of the page: one document, its history, and what the server said about it.
+// The document is never changed in place; `edit` replaces it and remembers the one before.
+
+import { computed, reactive, shallowReactive } from "/libraries/vue.js";
+import { emptyDocument } from "./document/document.js";
+import { emptyHistory, record, redone, undone } from "./document/history.js";
+
+export const state = shallowReactive({
+  document: emptyDocument(),
+  history: emptyHistory(),
+  selection: { joints: [], beams: [] }, // numbers in the document; replaced, never changed in place
+  hover: null, // { joint } or { beam } or { goal }: what the pointer or focus is on, in any view
+  tool: "select", // select, draw, split, fix
+  tab: "design", // design, goals, check, print
+  answer: null, // { document, result, milliseconds }: the last result, perhaps of an earlier document
+  check: null, // { document, errors, warnings, netLengths } of the last answer or failure
+  busy: false, // whether the server is asked about the current document
+  problem: null, // why the last question had no answer: a Problem
+  preview: null, // { result, grid, label }: a suggestion or step shown in place of the answer
+  fea: null, // { document, result, seconds, progress, state }: of the check by finite elements
+  print: null, // { document, toolpath, facts, layer, travels }: of the tab "print"
+  library: [], // [{ name, description, grid }]
+  material: null, // { name, section: {width, thickness}, limits: {...} }
+  connection: "online", // online, offline
+  saving: "saved", // saved, saving, offline, conflict
+});
+
+/** What is shown and how; not part of the document. */
+export const view = reactive({
+  frame: 11, // 0 to 11, fractions between frames while playing
+  playing: false,
+  loop: true,
+  colour: "actuator", // actuator, stress, strain, height, deviation
+  ghost: true,
+  dimensions: false,
+  heights: false,
+  theme: "system", // system, light, dark
+  language: "en",
+  pane: "both", // plan, shape, both; narrow windows show one
+});
+
+/** Whether the shown answer belongs to an earlier document. */
+export const stale = computed(() => state.answer?.document.grid !== state.document.grid);
+
+/** Replace the document by change(document).
+ *
+ * label: what was done, for undo. merge: edits in a row with the same key are one step of undo, as
+ * the moves of one drag. A change that returns the same document is none.
+ */
+export function edit(change, { label, merge = null }) {
+  const next = change(state.document);
+  if (next === state.document) return;
+  state.history = record(state.history, state.document, label, merge);
+  show(next);
+}
+
+/** End a run of merged edits, as at the end of a drag. */
+export function endMerge() {
+  state.history = { ...state.history, merge: null };
+}
+
+export function undo() {
+  step(undone(state.history, state.document));
+}
+
+export function redo() {
+  step(redone(state.history, state.document));
+}
+
+function step(result) {
+  if (!result) return;
+  state.history = result.history;
+  show(result.document);
+}
+
+/** Replace document and history, as when a file is opened or a page is loaded. */
+export function load(document, history = emptyHistory()) {
+  state.history = history;
+  show(document);
+}
+
+export function select(selection) {
+  state.selection = { joints: [], beams: [], ...selection };
+}
+
+function show(document) {
+  state.document = document;
+  const { joints, beams } = document.grid;
+  const { selection } = state;
+  if (selection.joints.some((k) => k >= joints.length) || selection.beams.some((b) => b >= beams.length))
+    select({
+      joints: selection.joints.filter((k) => k < joints.length),
+      beams: selection.beams.filter((b) => b < beams.length),
+    });
+}

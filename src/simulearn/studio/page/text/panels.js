@@ -1,0 +1,4 @@
+export const panels = {
+  en: {},
+  de: {},
+};

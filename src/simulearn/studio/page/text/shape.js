@@ -1,0 +1,4 @@
+export const shape = {
+  en: {},
+  de: {},
+};
