@@ -23,6 +23,7 @@ export const state = shallowReactive({
   material: null, // { name, section: {width, thickness}, limits: {...} }
   connection: "online", // online, offline
   saving: "unsaved", // unsaved (nothing to save yet), saved, saving, offline, conflict, failed
+  address: null, // id of the document in the page's address; null until there is something to save
   started: false, // whether there is a document to show
   server: null, // { version, ready, engines, formats, model } as the server says
   pointer: null, // [x, y] in mm under the pointer, where the plan gives it

@@ -1,9 +1,10 @@
 // The whole page: bar, plan and shape, side panel, status, and what opens over them.
 
-import { h } from "/libraries/vue.js";
+import { h, watchEffect } from "/libraries/vue.js";
 import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { Bar } from "./bar.js";
+import { Dialogs, Notices } from "./dialogs.js";
 import { Side } from "./side.js";
 import { Status } from "./status.js";
 import { Views } from "./views.js";
@@ -15,7 +16,13 @@ const starting = () => h("main", { class: "starting" }, [
 ]);
 
 export const App = {
-  render: () => (state.started
-    ? h("div", { class: "page" }, [h(Bar), h(Views), h(Side), h(Status)])
-    : starting()),
+  setup() {
+    watchEffect(() => {
+      const { name } = state.document;
+      globalThis.document.title = name ? `${name} · SimuLearn` : t("common.studio");
+    });
+    return () => (state.started
+      ? h("div", { class: "page" }, [h(Bar), h(Views), h(Side), h(Status), h(Dialogs), h(Notices)])
+      : starting());
+  },
 };

@@ -1,7 +1,9 @@
 // The bar on top: the design's name, undo and redo, the library, files, settings.
 
 import { h } from "/libraries/vue.js";
-import { edit, endMerge, redo, state, undo, view } from "../store.js";
+import { chooseFile, copyLink, saveFile } from "../service/files.js";
+import { newDocument, saveNow, showConflict } from "../service/saving.js";
+import { edit, endMerge, notify, redo, state, undo, view } from "../store.js";
 import { LANGUAGES, t } from "../text/text.js";
 import { Menu, button, iconButton } from "./controls.js";
 import { useMedia } from "./media.js";
@@ -31,14 +33,34 @@ const name = () => h("input", {
   },
 });
 
+/** Return the state of saving in words; where something is to be done about it, a button. */
+function saving() {
+  const text = t(`common.saving_${state.saving}`);
+  const run = { failed: saveNow, offline: saveNow, conflict: showConflict }[state.saving];
+  if (!run) return h("span", { class: "saving" }, text);
+  return h("button", { type: "button", class: ["saving", state.saving], title: t(`common.savingDo_${state.saving}`), onClick: run }, text);
+}
+
 const step = (glyph, last, key, run) => iconButton(glyph, last
   ? t(`common.${key}`, { what: last.label }) : t(`common.${key}None`), run, { disabled: !last });
 
 const dialog = (name) => () => { state.dialog = { name }; };
 
+function begin() {
+  newDocument();
+  notify(t("common.newDone"), { label: t("common.back"), run: () => history.back() });
+}
+
 /** Return the items of the menu "File". */
 const files = () => [
-  { text: t("common.openFile"), glyph: "open", hint: "Ctrl+O", run: dialog("open") },
+  { text: t("common.newFile"), glyph: "plus", run: begin },
+  { text: t("common.openFile"), glyph: "open", hint: "Ctrl O", run: chooseFile },
+  "-",
+  { text: t("common.saveFile"), glyph: "download", hint: "Ctrl S", run: () => saveFile() },
+  { text: t("common.saveGrid"), glyph: "download", run: () => saveFile({ gridOnly: true }) },
+  { text: t("common.exportMenu"), glyph: "hand", disabled: !state.server, run: dialog("export") },
+  "-",
+  { text: t("common.copyLink"), glyph: "link", run: copyLink },
 ];
 
 /** Return the items of the menu "Settings". */
@@ -52,6 +74,8 @@ const settings = () => [
   ...Object.entries(LANGUAGES).map(([language, text]) => ({
     text, checked: view.language === language, run: () => { view.language = language; },
   })),
+  "-",
+  { text: t("common.help"), glyph: "help", hint: "?", run: dialog("help") },
 ];
 
 export const Bar = {
@@ -62,7 +86,7 @@ export const Bar = {
         h("a", { class: "brand", href: "/", title: t("common.studio"), "aria-label": t("common.studio") },
           [logo(), h("span", { class: "wordmark" }, "SimuLearn")]),
         name(),
-        h("span", { class: ["saving", state.saving] }, t(`common.saving_${state.saving}`)),
+        saving(),
       ]),
       !narrow.value && h(PaneSwitch, { compact: true }),
       h("div", { class: "bar-part end" }, [

@@ -3,7 +3,7 @@
 import { computed, h, ref } from "/libraries/vue.js";
 import { Plan } from "../plan/plan.js";
 import { Shape } from "../shape/shape.js";
-import { view } from "../store.js";
+import { state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { Segmented, iconButton } from "./controls.js";
 import { useMedia } from "./media.js";
@@ -78,6 +78,7 @@ export const Views = {
     });
     return () => h("main", { class: "main" }, [
       h("h1", { class: "hidden" }, t("common.studio")),
+      state.server && !state.server.ready && h("p", { class: "tip", role: "status" }, t("common.preparing")),
       view.tip && h("div", { class: "tip" }, [
         h("p", t("common.tip")),
         iconButton("close", t("common.tipClose"), () => { view.tip = false; }, { class: "icon-button small" }),
