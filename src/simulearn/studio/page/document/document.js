@@ -1,6 +1,6 @@
 // The document that the page edits: a grid, goals and what is to be printed on.
 
-import { FARTHEST, isNumber } from "./geometry.js";
+import { FARTHEST, isNumber, isPlace } from "./geometry.js";
 import { same } from "./numbering.js";
 
 export const SCHEMA = "simulearn.document/1";
@@ -84,8 +84,9 @@ export function readDocument(data) {
   const given = object(data, "the document", keys);
   check(given.schema === SCHEMA, `schema is ${shown(given.schema)}; this page reads "${SCHEMA}"`);
   const { name = "", goals = [], printer = emptyDocument().printer } = given;
-  check(typeof name === "string" && name.length <= MOST_NAME, `name is not a text of at most ${MOST_NAME} characters`);
-  check(typeof printer === "string" && printer !== "", `printer is ${shown(printer)}; it is a printer's name`);
+  const titled = typeof name === "string" && name.length <= MOST_NAME;
+  check(titled, `name is ${shown(name)}; it is a text of at most ${MOST_NAME} characters`);
+  check(isName(printer), `printer is ${shown(printer)}; it is a printer's name`);
   const grid = readGrid(given.grid);
   check(Array.isArray(goals) && goals.length <= MOST_GOALS, `goals are not a list of at most ${MOST_GOALS}`);
   return { schema: SCHEMA, name, grid, goals: goals.map((goal, k) => readGoal(goal, k, grid)), printer };
@@ -122,8 +123,8 @@ export function readGrid(data) {
   const known = isIndex(fixed, places.length) || (places.length === 0 && fixed === 0);
   check(known, `fixed is ${shown(fixed)}; it is the number of a joint`);
   const { material: usual } = emptyDocument().grid;
-  check(material === undefined || (typeof material === "string" && material !== ""),
-    `material is ${shown(material)}; it is the name of a material`);
+  const made = material === undefined || isName(material);
+  check(made, `material is ${shown(material)}; it is the name of a material`);
   return {
     schema, joints: places, beams: pairs, actuators: [...ratios], fixed, material: material ?? usual,
   };
@@ -136,13 +137,14 @@ function readGoal(goal, k, grid) {
   if (words[0] === "beam" && isIndex(words[2], 3)) words[2] = SECTIONS[words[2]];
   check(hasVertex(grid, words), `goals[${k}].vertex is ${shown(vertex)}; the grid has no such vertex`);
   check(isTarget(target), `goals[${k}].target is ${shown(target)}; a target is [x, y, z] in mm`);
-  check(isNumber(weight) && weight >= 0, `goals[${k}].weight is ${shown(weight)}; it is a number of at least 0`);
+  const counts = isNumber(weight) && weight >= 0;
+  check(counts, `goals[${k}].weight is ${shown(weight)}; it is a number of at least 0`);
   return { vertex: words, target: [...target], weight };
 }
 
 /** Return whether a value is a place [x, y, z] that a goal may have. */
 export function isTarget(value) {
-  return Array.isArray(value) && value.length === 3 && value.every((x) => isNumber(x) && Math.abs(x) <= FARTHEST);
+  return isPlace(value, 3);
 }
 
 function object(value, what, keys) {
@@ -159,6 +161,10 @@ function list(value, what, most) {
   return value;
 }
 
+function isName(value) {
+  return typeof value === "string" && value !== "" && value.length <= MOST_NAME;
+}
+
 function pair(value, fits) {
   return Array.isArray(value) && value.length === 2 && value.every(fits);
 }
@@ -169,6 +175,11 @@ function check(holds, message) {
 
 function shown(value) {
   if (value === undefined) return "missing";
-  const text = JSON.stringify(value) ?? String(value);
+  let text;
+  try {
+    text = JSON.stringify(value) ?? String(value);
+  } catch {
+    text = "nested too deeply"; // lists in lists, beyond what can be written
+  }
   return text.length > 60 ? `${text.slice(0, 57)}...` : text;
 }

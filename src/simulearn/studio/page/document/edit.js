@@ -1,9 +1,10 @@
 // Changes of a document. Each function returns the changed document, or the same one where nothing
 // changes; numbers that no joint or beam has are passed over.
 
+import { emptyDocument, readGrid } from "./document.js";
 import { isNumber, isPoint, rounded } from "./geometry.js";
 import { jointsOf } from "./moving.js";
-import { rebuild, seenFrom } from "./numbering.js";
+import { compact, piecesOf, rebuild, seenFrom } from "./numbering.js";
 
 export { jointsOf, mirror, moveJoints, placeJoint, rotate, scale, setBeamLength } from "./moving.js";
 
@@ -21,9 +22,8 @@ export function removeParts(document, { joints = [], beams = [] }) {
   grid.beams.forEach((ends, b) => {
     if (!stays[b]) for (const k of ends) if (!used.has(k)) goneJoints.add(k);
   });
-  const number = compact(grid.joints.map((_, k) => !goneJoints.has(k)));
   const pieces = piecesOf(grid).filter((_, b) => stays[b]);
-  return renumber(document, pieces, number);
+  return renumber(document, pieces, compact(grid.joints.map((_, k) => !goneJoints.has(k))));
 }
 
 /** Make joint j the same as joint i, which keeps its place; a beam between them goes. */
@@ -31,8 +31,7 @@ export function mergeJoints(document, i, j) {
   const { grid } = document;
   if (i === j || !(i in grid.joints) || !(j in grid.joints)) return document;
   const number = compact(grid.joints.map((_, k) => k !== j));
-  number[j] = number[i];
-  return renumber(document, piecesOf(grid), number);
+  return renumber(document, piecesOf(grid), number.with(j, number[i]), number);
 }
 
 /** Set the ratio of beams, in [-1, 1]; + lifts their ends. */
@@ -43,8 +42,9 @@ export function setActuators(document, beams, ratio) {
 /** Change the ratio of beams to the next quarter above (1) or below (-1). */
 export function stepActuators(document, beams, direction) {
   const round = direction > 0 ? Math.floor : Math.ceil;
+  const sign = Math.sign(direction);
   // A ratio that is rounding away from a quarter counts as that quarter.
-  return actuate(document, beams, (r) => (round(r / STEP + Math.sign(direction) * 1e-6) + Math.sign(direction)) * STEP);
+  return actuate(document, beams, (ratio) => (round(ratio / STEP + sign * 1e-6) + sign) * STEP);
 }
 
 /** Exchange the active and passive halves of beams. */
@@ -64,8 +64,9 @@ export function setFixed(document, k) {
 export function copyParts(document, selection) {
   const { grid } = document;
   const numbers = jointsOf(grid, selection);
-  const selected = new Set(selection?.joints?.length || selection?.beams?.length ? selection.joints : numbers);
-  const chosen = new Set(selection?.beams);
+  const some = selection?.joints?.length || selection?.beams?.length;
+  const selected = new Set(some ? selection.joints : numbers);
+  const chosen = new Set(some ? selection.beams : []);
   const place = new Map(numbers.map((k, n) => [k, n]));
   const beams = grid.beams.map((_, b) => b).filter((b) =>
     chosen.has(b) || grid.beams[b].every((k) => selected.has(k)));
@@ -82,7 +83,7 @@ export function copyParts(document, selection) {
  */
 export function pasteParts(document, clip, at) {
   const { grid } = document;
-  if (!clip?.joints.length || !isPoint(at)) return document;
+  if (!isClip(clip) || !isPoint(at)) return document;
   const [dx, dy] = [0, 1].map((axis) => {
     const values = clip.joints.map((point) => point[axis]);
     return at[axis] - (Math.min(...values) + Math.max(...values)) / 2;
@@ -102,24 +103,21 @@ export function pasteParts(document, clip, at) {
   };
 }
 
-/** Return the beams of a grid as pieces for `rebuild`. */
-export function piecesOf(grid) {
-  return grid.beams.map((ends, beam) => ({ ends, ratio: grid.actuators[beam], beam, from: 0, to: 1 }));
+/** Return whether data are parts as `copyParts` gives them, at least one. */
+function isClip(data) {
+  try {
+    return readGrid({ ...emptyDocument().grid, ...data }).joints.length > 0;
+  } catch {
+    return false;
+  }
 }
 
-/** Return new numbers of the joints that stay, one after the other; null for the others. */
-export function compact(stays) {
-  let next = 0;
-  return stays.map((stay) => (stay ? next++ : null));
-}
-
-/** Return the document with pieces between joints that have new numbers, null where they go. */
-function renumber(document, pieces, number) {
-  const { joints } = document.grid;
-  const left = [];
-  number.forEach((n, k) => {
-    if (n !== null && !(n in left)) left[n] = joints[k];
-  });
+/** Return the document with pieces between joints that have new numbers, null where they go.
+ *
+ * stays: the new numbers of the joints that keep their places.
+ */
+function renumber(document, pieces, number, stays = number) {
+  const left = document.grid.joints.filter((_, k) => stays[k] !== null);
   const moved = pieces.map((piece) => ({ ...piece, ends: piece.ends.map((k) => number[k]) }));
   return rebuild(document, left, moved, (k) => number[k]);
 }

@@ -8,9 +8,15 @@ export function isNumber(value) {
   return typeof value === "number" && Number.isFinite(value);
 }
 
+/** Return whether a value is a list of so many coordinates, mm. */
+export function isPlace(value, dimensions) {
+  const inside = (x) => isNumber(x) && Math.abs(x) <= FARTHEST;
+  return Array.isArray(value) && value.length === dimensions && value.every(inside);
+}
+
 /** Return whether a value is a point of the plane that a grid may have. */
 export function isPoint(value) {
-  return Array.isArray(value) && value.length === 2 && value.every((x) => isNumber(x) && Math.abs(x) <= FARTHEST);
+  return isPlace(value, 2);
 }
 
 /** Return a number with six decimals, never -0. */
@@ -18,9 +24,16 @@ export function rounded(x) {
   return Math.round(x * DIGITS) / DIGITS + 0;
 }
 
+/** Return a number with six decimals that is no farther from 0 than a coordinate may be. */
+export function limited(x) {
+  return rounded(Math.min(FARTHEST, Math.max(-FARTHEST, x)));
+}
+
 /** Return the distance of two points. */
-export function distance([x, y], [u, v]) {
-  return Math.hypot(u - x, v - y);
+export function distance(p, q) {
+  const dx = q[0] - p[0];
+  const dy = q[1] - p[1];
+  return Math.sqrt(dx * dx + dy * dy); // several times faster than Math.hypot
 }
 
 /** Return the direction from p to q, degrees from +x in (-180, 180]. */
@@ -29,13 +42,14 @@ export function angle([x, y], [u, v]) {
 }
 
 /** Return the point at t from p (0) to q (1). */
-export function between([x, y], [u, v], t) {
-  return [x + t * (u - x), y + t * (v - y)];
+export function between(p, q, t) {
+  return [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])];
 }
 
 /** Return the place of the segment p q nearest to a point: {t in [0, 1], point, distance}. */
 export function nearestOnSegment(point, p, q) {
-  const [dx, dy] = [q[0] - p[0], q[1] - p[1]];
+  const dx = q[0] - p[0];
+  const dy = q[1] - p[1];
   const square = dx * dx + dy * dy;
   const along = square > 0 ? ((point[0] - p[0]) * dx + (point[1] - p[1]) * dy) / square : 0;
   const t = Math.min(1, Math.max(0, along));

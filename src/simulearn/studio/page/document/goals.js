@@ -1,10 +1,11 @@
 // Goals: where some vertices of the morphed grid are wanted, and how far from there they are.
 
 import { hasVertex, isTarget } from "./document.js";
-import { isNumber } from "./geometry.js";
+import { isNumber, limited, rounded } from "./geometry.js";
 import { same } from "./numbering.js";
 
 const SECTION = { start: 0, middle: 1, end: 2 };
+const MOST_WEIGHT = 1e6; // only ratios of weights count
 const LAST = 11; // number of the last frame: after creep
 
 /** Add the goal that a vertex comes to a target [x, y, z]; a goal of that vertex is replaced. */
@@ -13,7 +14,8 @@ export function addGoal(document, vertex, target, weight = 1) {
   if (!hasVertex(grid, vertex) || !isTarget(target) || !isWeight(weight)) return document;
   const k = goalOf(document, vertex);
   if (k !== null) return change(document, k, { target, weight });
-  return { ...document, goals: [...goals, { vertex: [...vertex], target: [...target], weight }] };
+  const goal = { vertex: [...vertex], target: target.map(limited), weight: rounded(weight) };
+  return { ...document, goals: [...goals, goal] };
 }
 
 /** Return the number of the goal of a vertex, or null. */
@@ -96,14 +98,18 @@ function mean({ numbers, stride, first, count }, frame) {
   return point;
 }
 
-function change(document, k, values) {
+function change(document, k, { target, weight }) {
   const goal = document.goals[k];
   if (!goal) return document;
-  const next = { ...goal, ...values };
+  const next = {
+    ...goal,
+    target: target?.map(limited) ?? goal.target,
+    weight: weight === undefined ? goal.weight : rounded(weight),
+  };
   if (same(next.target, goal.target) && next.weight === goal.weight) return document;
   return { ...document, goals: document.goals.map((one, n) => (n === k ? next : one)) };
 }
 
 function isWeight(value) {
-  return isNumber(value) && value >= 0;
+  return isNumber(value) && value >= 0 && value <= MOST_WEIGHT;
 }

@@ -1,6 +1,10 @@
 // Changes of where joints are: moves, turns, mirror images, sizes.
 
-import { FARTHEST, between, distance, isNumber, isPoint, rounded } from "./geometry.js";
+import { cornerFollower } from "./corners.js";
+import { FARTHEST, between, distance, isNumber, isPoint, limited, rounded } from "./geometry.js";
+import { OTHER_SIDE, followed } from "./numbering.js";
+
+const SAME = 1e-7; // mm; places that are nearer are one
 
 /** Return the joints of a selection: those selected and the ends of selected beams.
  *
@@ -23,28 +27,26 @@ export function placeJoint(document, k, point) {
   return place(document, [k], () => point);
 }
 
-/** Mirror a selection or all: "x" exchanges left and right, "y" up and down.
+/** Mirror a selection or all joints: "x" exchanges left and right, "y" up and down.
  *
- * A selection is mirrored about its middle, the whole about the fixed joint. What is active on the
- * top half stays so. Targets and sides of goals are mirrored with the whole.
+ * A selection is mirrored about its middle, all joints about the fixed one. What is active on the
+ * top half stays so. Targets are mirrored with all joints.
  */
 export function mirror(document, selection, axis) {
   const numbers = jointsOf(document.grid, selection);
   const [u, v] = pivot(document.grid, numbers);
-  const flip = axis === "x" ? ([x, y]) => [2 * u - x, y] : ([x, y]) => [x, 2 * v - y];
-  const next = place(document, numbers, flip);
-  if (next === document || numbers.length < next.grid.joints.length) return next;
-  const target = axis === "x" ? ([x, y, z]) => [-x + 0, y, z] : ([x, y, z]) => [x, -y + 0, z];
-  const goals = next.goals.map((goal) => ({
-    ...goal, target: target(goal.target), vertex: mirrored(goal.vertex, axis),
-  }));
-  return { ...next, goals };
+  const x = axis === "x";
+  const next = place(document, numbers, ([a, b]) => (x ? [2 * u - a, b] : [a, 2 * v - b]), {
+    turn: (angle) => (x ? Math.PI - angle : -angle),
+    mirrored: true,
+  });
+  return withTargets(next, document, numbers, ([a, b, c]) => (x ? [-a + 0, b, c] : [a, -b + 0, c]));
 }
 
-/** Turn a selection or all by degrees, counter-clockwise.
+/** Turn a selection or all joints by degrees, counter-clockwise.
  *
- * about: the point that stays; unless given, the fixed joint where it is among the joints, else the
- * selection's middle. Targets are turned with the whole.
+ * about: the point that stays; unless given, the fixed joint where it is among them, else their
+ * middle. Targets are turned with all joints.
  */
 export function rotate(document, selection, degrees, about = null) {
   const { grid } = document;
@@ -53,10 +55,12 @@ export function rotate(document, selection, degrees, about = null) {
   const middle = numbers.includes(grid.fixed) ? grid.joints[grid.fixed] : pivot(grid, numbers);
   const [u, v] = about ?? middle;
   const [c, s] = turn(degrees);
-  const next = place(document, numbers, ([x, y]) =>
-    [u + c * (x - u) - s * (y - v), v + s * (x - u) + c * (y - v)]);
-  if (next === document || numbers.length < grid.joints.length) return next;
-  return withTargets(next, ([x, y, z]) => [rounded(c * x - s * y), rounded(s * x + c * y), z]);
+  const turned = ([x, y]) => [c * x - s * y, s * x + c * y];
+  const next = place(document, numbers, (point) => {
+    const [x, y] = turned([point[0] - u, point[1] - v]);
+    return [u + x, v + y];
+  }, { turn: (angle) => angle + Math.atan2(s, c) });
+  return withTargets(next, document, numbers, ([x, y, z]) => [...turned([x, y]), z]);
 }
 
 /** Scale the grid about its fixed joint, and the targets with it. */
@@ -66,8 +70,7 @@ export function scale(document, factor) {
   const about = grid.joints[grid.fixed];
   const all = grid.joints.map((_, k) => k);
   const next = place(document, all, (point) => between(about, point, factor));
-  if (next === document) return document;
-  return withTargets(next, (target) => target.map((x) => rounded(factor * x)));
+  return withTargets(next, document, all, (target) => target.map((x) => factor * x));
 }
 
 /** Give beam b a length, mm, by moving one end along it.
@@ -85,28 +88,45 @@ export function setBeamLength(document, b, length) {
   const stays = moves === i ? j : i;
   const [p, q] = [joints[stays], joints[moves]];
   const now = distance(p, q);
-  if (Math.abs(now - length) < 1e-9) return document;
+  if (Math.abs(now - length) < SAME) return document;
   return placeJoint(document, moves, now > 0 ? between(p, q, length / now) : [p[0] + length, p[1]]);
 }
 
-/** Return the document with joints at map(place); itself where nothing moves or a place is none. */
-function place(document, numbers, map) {
+/** Return the document with joints at map(place); itself where nothing moves or a place is none.
+ *
+ * turn, mirrored: what becomes of directions at these joints, for goals at their corners.
+ */
+function place(document, numbers, map, { turn: direction = (angle) => angle, mirrored = false } = {}) {
   const { grid } = document;
   const joints = [...grid.joints];
+  const moving = new Set(numbers);
   let changed = false;
-  for (const k of new Set(numbers)) {
+  for (const k of moving) {
     if (!(k in joints)) continue;
     const point = map(joints[k]);
     if (!isPoint(point)) return document;
     const next = point.map(rounded);
-    if (distance(next, joints[k]) < 1e-7) continue;
+    if (distance(next, joints[k]) < SAME) continue;
     joints[k] = next;
     changed = true;
   }
-  return changed ? { ...document, grid: { ...grid, joints } } : document;
+  if (!changed) return document;
+  const next = { ...grid, joints };
+  const turned = cornerFollower(grid, next, direction, mirrored);
+  const others = cornerFollower(grid, next);
+  const goals = followed(document.goals, (vertex) => {
+    const corner = vertex.at(-1);
+    if (vertex[0] === "joint") {
+      const [, k] = vertex;
+      return ["joint", k, (moving.has(k) ? turned : others)(k, k, corner)];
+    }
+    const swap = mirrored && corner !== "centre" && grid.beams[vertex[1]].every((k) => moving.has(k));
+    return swap ? [...vertex.slice(0, 3), OTHER_SIDE[corner]] : vertex;
+  });
+  return { ...document, grid: next, goals };
 }
 
-/** Return what a mirror image keeps: the fixed joint for the whole, else the middle. */
+/** Return what a mirror image keeps: the fixed joint of all joints, else the middle. */
 function pivot(grid, numbers) {
   if (numbers.length === 0) return [0, 0];
   if (numbers.length === grid.joints.length) return grid.joints[grid.fixed];
@@ -125,16 +145,9 @@ function turn(degrees) {
   return [Math.cos(radians), Math.sin(radians)];
 }
 
-function withTargets(document, map) {
-  if (document.goals.length === 0) return document;
-  return { ...document, goals: document.goals.map((goal) => ({ ...goal, target: map(goal.target) })) };
-}
-
-/** Return a vertex of the mirrored grid: right and left are exchanged. */
-function mirrored(vertex, axis) {
-  const corner = vertex.at(-1);
-  if (corner === "centre") return vertex;
-  // A beam's corners are right and left in turn. A joint's are counter-clockwise, two above it.
-  const other = vertex[0] === "beam" || axis === "x" ? corner ^ 1 : corner ^ 3;
-  return [...vertex.slice(0, -1), other];
+/** Return the document after a move with targets that have moved alike, if all joints have. */
+function withTargets(next, document, numbers, map) {
+  const { grid, goals } = next;
+  if (next === document || goals.length === 0 || numbers.length < grid.joints.length) return next;
+  return { ...next, goals: goals.map((goal) => ({ ...goal, target: map(goal.target).map(limited) })) };
 }

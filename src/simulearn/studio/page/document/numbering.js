@@ -1,8 +1,12 @@
 // What refers to joints and beams by number follows them when the numbers change.
 
+import { cornerFollower } from "./corners.js";
+import { limited } from "./geometry.js";
+import { lasting } from "./structure.js";
+
 const WHERE = { start: 0, middle: 0.5, end: 1 };
 const OTHER_END = { start: "end", middle: "middle", end: "start" };
-const OTHER_SIDE = [1, 0, 3, 2]; // a section's right and left corners, seen from the other end
+export const OTHER_SIDE = [1, 0, 3, 2]; // a section's right and left corners, seen from the other end
 
 /** Return the document with other joints and beams; goals and the fixed joint follow.
  *
@@ -14,7 +18,6 @@ export function rebuild(document, joints, pieces, jointOf) {
   const { grid } = document;
   const { beams, actuators, parts } = distinct(pieces, grid, joints.length);
   const fixed = fixedJoint(grid, joints, beams, jointOf);
-  const goals = followed(document.goals, jointOf, parts, beams);
   const next = {
     ...grid,
     joints: same(joints, grid.joints) ? grid.joints : joints,
@@ -23,6 +26,8 @@ export function rebuild(document, joints, pieces, jointOf) {
     fixed,
   };
   const unchanged = Object.keys(next).every((key) => next[key] === grid[key]);
+  const vertexOf = follower(grid, next, jointOf, parts);
+  const goals = followed(document.goals, vertexOf);
   if (unchanged && goals === document.goals) return document;
   const moved = { ...document, grid: unchanged ? grid : next, goals };
   if (jointOf(grid.fixed) !== null || joints.length === 0) return moved;
@@ -35,7 +40,7 @@ export function seenFrom(goals, before, after) {
   if (goals.length === 0 || (dx === 0 && dy === 0)) return goals;
   return goals.map((goal) => {
     const [x, y, z] = goal.target;
-    return { ...goal, target: [x + dx, y + dy, z] };
+    return { ...goal, target: [x + dx, y + dy, z].map(limited) };
   });
 }
 
@@ -48,6 +53,17 @@ export function nearestOf(joints, point, use) {
     if (away < least - 1e-6 && use(k)) [best, least] = [k, away];
   });
   return best;
+}
+
+/** Return the beams of a grid as pieces for `rebuild`. */
+export function piecesOf(grid) {
+  return grid.beams.map((ends, beam) => ({ ends, ratio: grid.actuators[beam], beam, from: 0, to: 1 }));
+}
+
+/** Return new numbers of the joints that stay, one after the other; null for the others. */
+export function compact(stays) {
+  let next = 0;
+  return stays.map((stay) => (stay ? next++ : null));
 }
 
 /** Return whether two lists have the same entries. */
@@ -81,42 +97,50 @@ function fixedJoint(grid, joints, beams, jointOf) {
   if (joints.length === 0) return 0;
   const own = grid.joints.length > grid.fixed ? jointOf(grid.fixed) : 0;
   if (own !== null) return own;
-  const used = new Set(beams.flat());
-  const use = used.size ? (k) => used.has(k) : () => true;
-  return nearestOf(joints, grid.joints[grid.fixed], use);
+  // A joint that bears something, else one with a beam, else any.
+  const loops = lasting({ joints, beams }).joints;
+  const choice = loops.size ? loops : new Set(beams.length ? beams.flat() : joints.keys());
+  return nearestOf(joints, grid.joints[grid.fixed], (k) => choice.has(k));
 }
 
-function followed(goals, jointOf, parts, beams) {
+/** Return goals with vertexOf(vertex), without those that have none or one that is taken. */
+export function followed(goals, vertexOf) {
   const seen = new Set();
   const next = [];
   for (const goal of goals) {
-    const vertex = follow(goal.vertex, jointOf, parts, beams);
-    const key = JSON.stringify(vertex);
+    const vertex = vertexOf(goal.vertex);
+    const key = vertex?.join();
     if (vertex === null || seen.has(key)) continue;
     seen.add(key);
-    next.push(key === JSON.stringify(goal.vertex) ? goal : { ...goal, vertex });
+    next.push(same(vertex, goal.vertex) ? goal : { ...goal, vertex });
   }
   return same(next, goals) ? goals : next;
 }
 
-/** Return the vertex after the change, or null; what was inside a beam goes to the nearest place. */
-function follow(vertex, jointOf, parts, beams) {
-  if (vertex[0] === "joint") {
-    const k = jointOf(vertex[1]);
-    return k === null ? null : ["joint", k, vertex[2]];
-  }
-  const [, beam, section, corner] = vertex;
+/** Return a function that gives a vertex after the change; null where it is gone. */
+function follower(before, after, jointOf, parts) {
+  const corner = cornerFollower(before, after);
+  return ([part, number, ...rest]) => {
+    if (part === "beam") return onPart(rest, parts[number], after.beams);
+    const k = jointOf(number);
+    return k === null ? null : ["joint", k, corner(number, k, rest[0])];
+  };
+}
+
+/** Return the vertex of a beam's parts that is nearest to what was at a section of the beam. */
+function onPart([section, corner], parts, beams) {
   let best = null;
   let least = Infinity;
-  for (const part of parts[beam]) {
+  for (const part of parts) {
     for (const [name, t] of Object.entries(WHERE)) {
       const away = Math.abs(part.from + t * (part.to - part.from) - WHERE[section]);
-      if (away < least - 1e-9) [best, least] = [{ part, name }, away];
+      if (away < least - 1e-9) [best, least] = [{ ...part, name }, away];
     }
   }
   if (!best) return null;
-  const { number, reversed } = best.part;
+  const { number, reversed } = best;
   const name = reversed ? OTHER_END[best.name] : best.name;
+  // What was in the middle of a beam and is now at a joint is at its centre.
   if (section === "middle" && name !== "middle" && corner === "centre")
     return ["joint", beams[number][name === "start" ? 0 : 1], "centre"];
   return ["beam", number, name, reversed && corner !== "centre" ? OTHER_SIDE[corner] : corner];

@@ -2,13 +2,14 @@
 
 import { beamLength } from "./measure.js";
 import { distance, nearestOnSegment } from "./geometry.js";
-import { mergeJoints, piecesOf, removeParts, setActuators, setFixed } from "./edit.js";
-import { splitBeam, weave } from "./drawing.js";
-import { nearestOf, rebuild } from "./numbering.js";
+import { mergeJoints, removeParts, setActuators, setFixed } from "./edit.js";
+import { TOLERANCE, splitBeam } from "./drawing.js";
+import { nearestOf, piecesOf, rebuild } from "./numbering.js";
+import { lasting, partsOf } from "./structure.js";
+import { weave } from "./weaving.js";
 
 const QUARTER = 0.25; // steps of a ratio
 const ROUNDING = 1e-6; // mm, as in grid/checks.py
-const NEAR = 1; // mm; beams that are nearer run over each other
 const WIDTH = 7.2; // mm, of a beam, unless limits say otherwise
 
 const REPAIRS = {
@@ -38,10 +39,11 @@ export function repair(message, document, netLengths = {}, limits = {}) {
 
 /** Return the number in `where` and the parts {kind, number} that the message names. */
 function named({ where = "", message = "" }) {
-  const parts = [...message.matchAll(/\b(joint|beam) (\d+)/g)];
+  const found = [...message.matchAll(/\b(joint|beam)s? (\d+)(?: and (\d+))?/g)];
   return {
     number: Number(/\d+/.exec(where)?.[0] ?? NaN),
-    parts: parts.map(([, kind, number]) => ({ kind, number: Number(number) })),
+    parts: found.flatMap(([, kind, ...numbers]) =>
+      numbers.filter((n) => n !== undefined).map((n) => ({ kind, number: Number(n) }))),
   };
 }
 
@@ -60,7 +62,7 @@ function lengthen({ document, netLengths, limits, number }) {
 }
 
 function coincide({ parts }) {
-  const [i, j] = [...new Set(parts.map(({ number }) => number))].sort((a, b) => a - b);
+  const [i, j] = new Set(parts.map(({ number }) => number));
   return i === undefined || j === undefined ? null : merge(i, j);
 }
 
@@ -68,18 +70,19 @@ function close({ document, number, limits }) {
   const ends = document.grid.beams[number];
   // A beam of ordinary length is short of room for another reason: sharp corners at its ends.
   if (!ends || beamLength(document.grid, number) > 2 * (limits.width ?? WIDTH)) return null;
-  return merge(...[...ends].sort((a, b) => a - b));
+  return merge(...ends);
 }
 
-function merge(i, j) {
-  return { label: "repairs.merge", values: { a: i, b: j }, apply: (one) => mergeJoints(one, i, j) };
+function merge(one, other) {
+  const [i, j] = [Math.min(one, other), Math.max(one, other)];
+  return { label: "repairs.merge", values: { a: i, b: j }, apply: (it) => mergeJoints(it, i, j) };
 }
 
 /** Beams that leave a joint in one direction run over each other: draw the way once. */
 function untangle({ document, message, number, parts }) {
   if (/ lies where joint /.test(message.message)) {
     const joints = parts.filter(({ kind }) => kind === "joint").map((part) => part.number);
-    return joints.length > 1 && joints[0] !== joints[1] ? merge(...joints.slice(0, 2).sort((a, b) => a - b)) : null;
+    return joints.length > 1 ? merge(joints[0], joints[1]) : null;
   }
   const two = parts.filter(({ kind }) => kind === "beam").map((part) => part.number);
   if (two.length !== 2 || !(number in document.grid.joints)) return null;
@@ -110,7 +113,7 @@ function joinJoint(grid, joint, beam, width) {
   const found = nearestOnSegment(grid.joints[joint], grid.joints[i], grid.joints[j]);
   if (found.distance > width) return null;
   const end = [i, j].find((k) => distance(grid.joints[k], grid.joints[joint]) <= width);
-  if (end !== undefined) return merge(Math.min(end, joint), Math.max(end, joint));
+  if (end !== undefined) return merge(end, joint);
   return {
     label: "repairs.joinJoint",
     values: { joint, beam },
@@ -125,7 +128,7 @@ function woven(document, [a, b]) {
   const joints = [...grid.joints];
   const ends = new Set([...grid.beams[a], ...grid.beams[b]]);
   const two = piecesOf(grid).filter((_, n) => n === a || n === b);
-  const cut = weave(joints, two, new Set([0, 1]), ends, NEAR);
+  const cut = weave(joints, two, new Set([0, 1]), ends, TOLERANCE);
   const rest = piecesOf(grid).filter((_, n) => n !== a && n !== b);
   const first = cut.slice(0, 2);
   const all = [...rest, ...first].sort((one, other) => one.beam - other.beam);
@@ -134,42 +137,21 @@ function woven(document, [a, b]) {
 
 function fixOther({ document }) {
   const { grid } = document;
-  const stays = lasting(grid);
+  const stays = lasting(grid).joints;
   const k = nearestOf(grid.joints, grid.joints[grid.fixed], (n) => stays.has(n));
   return k === null ? null : { label: "repairs.fix", values: { joint: k }, apply: (one) => setFixed(one, k) };
-}
-
-/** Return the joints that stay when dangling beams are taken off, again and again. */
-function lasting({ joints, beams }) {
-  const valence = joints.map(() => 0);
-  beams.flat().forEach((k) => (valence[k] += 1));
-  let left = beams;
-  for (let before = null; before !== left.length; ) {
-    before = left.length;
-    left = left.filter(([i, j]) => {
-      const stays = valence[i] > 1 && valence[j] > 1;
-      if (!stays) for (const k of [i, j]) valence[k] -= 1;
-      return stays;
-    });
-  }
-  return new Set(left.flat());
 }
 
 /** Keep the part with the most beams, of several the fixed joint's. */
 function keepLargest({ document }) {
   const { grid } = document;
-  const part = grid.joints.map((_, k) => k);
-  const root = (k) => {
-    while (part[k] !== k) k = part[k] = part[part[k]];
-    return k;
-  };
-  for (const [i, j] of grid.beams) part[root(j)] = root(i);
+  const part = partsOf(grid);
   const count = new Map();
-  for (const [i] of grid.beams) count.set(root(i), (count.get(root(i)) ?? 0) + 1);
+  for (const [i] of grid.beams) count.set(part[i], (count.get(part[i]) ?? 0) + 1);
   const most = Math.max(...count.values());
-  const own = root(grid.fixed);
+  const own = part[grid.fixed];
   const stays = count.get(own) === most ? own : [...count.keys()].find((k) => count.get(k) === most);
-  const beams = grid.beams.map((_, b) => b).filter((b) => root(grid.beams[b][0]) !== stays);
+  const beams = [...grid.beams.keys()].filter((b) => part[grid.beams[b][0]] !== stays);
   if (beams.length === 0) return null;
   return {
     label: "repairs.removeBeams",
@@ -179,9 +161,11 @@ function keepLargest({ document }) {
 }
 
 function removeBeam({ number }) {
-  return { label: "repairs.removeBeam", values: { beam: number }, apply: (one) => removeParts(one, { beams: [number] }) };
+  const apply = (one) => removeParts(one, { beams: [number] });
+  return { label: "repairs.removeBeam", values: { beam: number }, apply };
 }
 
 function removeJoint({ number }) {
-  return { label: "repairs.removeJoint", values: { joint: number }, apply: (one) => removeParts(one, { joints: [number] }) };
+  const apply = (one) => removeParts(one, { joints: [number] });
+  return { label: "repairs.removeJoint", values: { joint: number }, apply };
 }

@@ -21,7 +21,9 @@ export function snap(point, options) {
   const { document, exclude = [], from = null, grid = 5, radius = 3, angle = 15, lengths = true } = options;
   const around = surroundings(document.grid, exclude);
   const setting = { point, from, grid, radius, angle, lengths, around };
-  const found = toJoint(setting) ?? toBeam(setting) ?? toDirection(setting) ?? toLines(setting) ?? toGrid(setting);
+  const rules = [toJoint, toBeam, toDirection, toLines, toGrid]; // the first that applies
+  let found = null;
+  for (const rule of rules) found ??= rule(setting);
   const text = from && distance(from, found.point) > 0 ? { text: measure(from, found.point) } : {};
   return { guides: [], ...found, ...text };
 }
