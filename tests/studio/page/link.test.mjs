@@ -41,7 +41,7 @@ test("garbage is refused in a sentence", async () => {
 });
 
 test("a link with more than a design can be is refused before it fills the memory", async () => {
-  const bomb = text(Buffer.alloc(900_000_000, " "));
+  const bomb = text(Buffer.alloc(200_000_000, " "));
   assert.ok(bomb.length < 1_400_000);
   const before = process.memoryUsage();
   let most = 0;
