@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.grid import Grid, validate
+from simulearn.errors import InputError
+from simulearn.grid import Grid, net_lengths
 from simulearn.grid.cleaning import kept
 from simulearn.material import load_material
 from simulearn.simulate import Failure, Outcome, Result, remarks, summary
@@ -23,6 +24,9 @@ from simulearn.simulate.resultfile import failure_to_dict
 MAGIC = b"SLF1"
 SCHEMA = "simulearn.frames/1"
 MEDIA_TYPE = "application/vnd.simulearn.frames"
+IN_RESPONSES: dict[int | str, dict[str, Any]] = {  # for the description of a route
+    200: {"content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}}}
+}
 
 
 def to_bytes(grids: Sequence[Grid], outcomes: Sequence[Outcome]) -> bytes:
@@ -80,11 +84,14 @@ def _failure(grid: Grid, failure: Failure) -> dict[str, Any]:
         "ok": False,
         **failure_to_dict(failure),
         "errors": [asdict(message) for message in failure.invalid],
-        "net_lengths": {} if failure.code == "material" else _net_lengths(grid),
+        "net_lengths": _net_lengths(grid),
     }
 
 
 def _net_lengths(grid: Grid) -> dict[int, float]:
     """Return the length between its joints, mm, of each beam that has an outline."""
-    report = validate(grid, load_material(grid.material))
-    return {b: round(length, 3) for b, length in report.net_lengths.items()}
+    try:
+        section = load_material(grid.material).section
+    except InputError:
+        return {}
+    return {b: round(length, 3) for b, length in net_lengths(grid, section.width).items()}
