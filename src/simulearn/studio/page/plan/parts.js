@@ -69,12 +69,12 @@ const Beam = {
 function ratioMark(ratio, turn) {
   const upside = turn > 90.01 || turn <= -89.99;
   const text = `${shown(Math.abs(ratio) * 100, 0)} %`;
-  const wide = 11 + text.length * 6.2; // px, with the arrow
+  const wide = 18 + text.length * 6.4; // px, with the arrow
   return h("g", { class: ["ratio", ratio > 0 ? "top" : "bottom"], transform: upside ? "scale(-1 1)" : "scale(1 -1)" }, [
     h("g", { class: "sized" }, [
       h("rect", { x: -wide / 2, y: -7.5, width: wide, height: 15, rx: 4 }),
-      h("path", { d: ratio > 0 ? "M0 -3.5l3.6 6h-7.2z" : "M0 3.5l3.6 -6h-7.2z", transform: `translate(${8.5 - wide / 2} 0.3)` }),
-      h("text", { x: 5, y: 3.8 }, text),
+      h("path", { d: ratio > 0 ? "M0 -3.5l3.6 6h-7.2z" : "M0 3.5l3.6 -6h-7.2z", transform: `translate(${9.5 - wide / 2} 0.3)` }),
+      h("text", { x: 5.5, y: 3.8 }, text),
     ]),
   ]);
 }
