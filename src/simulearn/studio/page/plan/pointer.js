@@ -36,6 +36,12 @@ export function listen(svg, { openMenu, isSpaceDown }) {
     };
   };
 
+  /** Remember where the pointer is; null: not over the plan. */
+  const point = (pointer) => {
+    editor.pointer = pointer;
+    state.pointer = pointer?.point ?? null;
+  };
+
   const plan = () => {
     frame ||= requestAnimationFrame(flush);
   };
@@ -57,12 +63,12 @@ export function listen(svg, { openMenu, isSpaceDown }) {
       return;
     }
     if (event) moved(event);
-    else if (editor.pointer && turned.use) editor.pointer = { ...editor.pointer, point: toPlan(editor.camera, editor.pointer.screen) };
+    else if (editor.pointer && turned.use) point({ ...editor.pointer, point: toPlan(editor.camera, editor.pointer.screen) });
   }
 
   function moved(event) {
     const pointer = read(event);
-    editor.pointer = pointer;
+    point(pointer);
     if (!press) {
       if (event.buttons === 0) currentTool().hover(pointer);
       return;
@@ -81,7 +87,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   function down(event) {
     editor.menu = null;
     const pointer = read(event);
-    editor.pointer = pointer;
+    point(pointer);
     if (pointer.touch) {
       fingers.set(event.pointerId, pointer.screen);
       if (fingers.size === 2) {
@@ -139,7 +145,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
       currentTool().release({ ...pointer, moved: false });
     }
     if (pointer.touch) {
-      editor.pointer = null;
+      point(null);
       currentTool().leave();
     }
   }
@@ -156,13 +162,13 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   function leave() {
     if (press) return;
     waiting = null;
-    editor.pointer = null;
+    point(null);
     currentTool().leave();
   }
 
   function turn(event) {
     event.preventDefault();
-    editor.pointer = read(event);
+    point(read(event));
     wheel.add(event, event.timeStamp, () => {
       const part = partUnderPointer();
       if (part?.beam === undefined || state.tool === "draw") return null;
