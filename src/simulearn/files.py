@@ -6,6 +6,7 @@ operating system does in one step: a reader of the final name gets the old file 
 
 import errno
 import io
+import json
 import os
 import re
 import secrets
@@ -13,6 +14,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import platformdirs
 
@@ -141,3 +143,36 @@ def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
         raise InputError(f"{path}: is not UTF-8 text") from error
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+
+
+def parse_json(text: str) -> Any:
+    """Return what a JSON text holds; more strictly than Python, which takes NaN and double keys.
+
+    Raises:
+        InputError: the text is not JSON; `where` is the place.
+    """
+    try:
+        return json.loads(text, parse_constant=_no_constant, object_pairs_hook=_no_twins)
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise InputError(f"is not valid JSON at {place}: {error.msg}", "json", place) from error
+    except RecursionError as error:
+        raise InputError("is not valid; its lists are nested too deeply", "json") from error
+    except InputError:
+        raise
+    except ValueError as error:  # Python refuses to convert thousands of digits
+        raise InputError("holds a number with too many digits", "json") from error
+
+
+def _no_constant(name: str) -> None:
+    raise InputError(f"{name} is not a number that JSON may hold", "json", name)
+
+
+def _no_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data = dict(pairs)
+    if len(data) < len(pairs):
+        keys = [key for key, _ in pairs]
+        twin = json.dumps(next(key for key in keys if keys.count(key) > 1))
+        twin = twin if len(twin) <= 40 else twin[:37] + "..."
+        raise InputError(f"the key {twin} occurs twice", "json", twin)
+    return data

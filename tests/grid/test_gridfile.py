@@ -143,14 +143,14 @@ def test_a_missing_key_is_named(key):
     [
         ('{"schema": "simulearn.grid/1",\n  joints}', "is not valid JSON at line 2, column 3: "),
         ("", "is not valid JSON at line 1, column 1: "),
-        ('{"fixed": NaN}', "NaN is not a number that a grid may hold"),
-        ('{"fixed": -Infinity}', "-Infinity is not a number that a grid may hold"),
+        ('{"fixed": NaN}', "NaN is not a number that JSON may hold"),
+        ('{"fixed": -Infinity}', "-Infinity is not a number that JSON may hold"),
         ('{"fixed": 1, "fixed": 2}', 'the key "fixed" occurs twice'),
-        ("[" * 100_000, "is not a grid; its lists are nested too deeply"),
+        ("[" * 100_000, "is not valid; its lists are nested too deeply"),
         ("[1]", "is [1]; a grid is an object with the keys schema, joints, beams"),
         (json.dumps({**GOOD, "fixed": 9}), "fixed is 9; "),
         (json.dumps(GOOD).replace("65.0", "1e999", 1), "joints[0][1] is "),
-        (json.dumps(GOOD).replace("65.0", "9" * 5000, 1), "Exceeds the limit"),
+        (json.dumps(GOOD).replace("65.0", "9" * 5000, 1), "holds a number with too many digits"),
     ],
 )
 def test_a_wrong_file_is_named_with_its_fault(tmp_path, text, line):

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from simulearn.errors import InputError
-from simulearn.files import read_text, replacing
+from simulearn.files import parse_json, read_text, replacing
 from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
 from simulearn.grid.arrays import hint, shown
 from simulearn.grid.grid import Grid
@@ -20,7 +20,9 @@ MOST_BYTES = 2**24  # several times the largest grid that can be computed
 Index = Annotated[int, Field(ge=0, lt=2**31)]  # the type's bound; the grid's is checked later
 
 
-class _GridFile(BaseModel):
+class GridFile(BaseModel):
+    """A grid as its file holds it: mm, indices counted from 0, ratios in [-1, 1]."""
+
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
     schema_: Literal["simulearn.grid/1"] = Field(alias="schema")
@@ -47,16 +49,7 @@ def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
     """
     text = read_text(path, MOST_BYTES)
     try:
-        data = json.loads(text, parse_constant=_no_constant, object_pairs_hook=_no_twins)
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise InputError(f"{path}: is not valid JSON at {place}: {error.msg}") from error
-    except RecursionError as error:
-        raise InputError(f"{path}: is not a grid; its lists are nested too deeply") from error
-    except ValueError as error:  # of the two hooks, or a number of thousands of digits
-        raise InputError(f"{path}: {error}") from error
-    try:
-        return grid_from_dict(data, paths=paths)
+        return grid_from_dict(parse_json(text), paths=paths)
     except InputError as error:
         raise InputError(f"{path}: {error}", error.code, error.where) from error
 
@@ -86,7 +79,7 @@ def grid_from_dict(data: Any, *, paths: bool = False) -> Grid:
         InputError: a key, type, length, index or number is wrong; one line says which.
     """
     try:
-        file = _GridFile.model_validate(data)
+        file = GridFile.model_validate(data)
     except ValidationError as error:
         raise InputError(_line(error.errors(include_url=False)[0]), "grid-file") from error
     if not file.material.isprintable():
@@ -111,19 +104,6 @@ def grid_to_dict(grid: Grid) -> dict[str, Any]:
         "fixed": grid.fixed,
         "material": grid.material,
     }
-
-
-def _no_constant(name: str) -> None:
-    raise ValueError(f"{name} is not a number that a grid may hold")
-
-
-def _no_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    data = dict(pairs)
-    if len(data) < len(pairs):
-        keys = [key for key, _ in pairs]
-        twin = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f"the key {shown(twin)} occurs twice")
-    return data
 
 
 def _line(error: Any) -> str:

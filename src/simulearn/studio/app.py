@@ -1,45 +1,103 @@
 """The studio's server: the page's files and the REST API on one address."""
 
-from pathlib import Path
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from functools import cache
+from typing import Any
 
 from fastapi import FastAPI, Request, Response
-from fastapi.responses import FileResponse
-from fastapi.staticfiles import StaticFiles
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.types import ASGIApp, Receive, Scope, Send
 
-from simulearn.grid import grid_from_dict, library, make, grid_to_dict
-from simulearn.simulate import engine, outcome_to_dict
 from simulearn.studio import frames
-from simulearn.studio.libraries import libraries
+from simulearn.studio.bodies import json_response
+from simulearn.studio.documents import Documents
+from simulearn.studio.jobs import Jobs
+from simulearn.studio.openapi import describe
+from simulearn.studio.page import serve_page
+from simulearn.studio.problems import LastResort, answer_errors
+from simulearn.studio.routes import about, designs, documents, files, jobs, prints
+from simulearn.studio.safety import BodyLimit, OwnOriginOnly, SecurityHeaders
+from simulearn.studio.settings import Settings
+from simulearn.studio.simulations import Simulations
+from simulearn.studio.turns import Turns
 
-PAGE = Path(__file__).parent / "page"
+ROUTERS = (
+    about.router,
+    designs.router,
+    jobs.router,
+    prints.router,
+    files.router,
+    documents.router,
+)
+ROOM = 2**14  # bytes of text that are worth compressing
+EFFORT = 4  # of compressing; more takes longer than it saves
 
 
-def create_app() -> FastAPI:
-    """Return the server's application."""
-    app = FastAPI(title="SimuLearn studio")
-    found = libraries()
+def create_app(settings: Settings | None = None) -> FastAPI:
+    """Return the server's application.
 
-    @app.get("/")
-    def index() -> FileResponse:
-        return FileResponse(PAGE / "index.html")
+    Args:
+        settings: hosts, folder of the documents and limits.
 
-    @app.get("/libraries/{name}")
-    def library_file(name: str) -> FileResponse:
-        return FileResponse(found[name], media_type="text/javascript")
-
-    @app.get("/api/library")
-    def library_() -> dict:
-        return {"designs": [{"name": n, "description": d, "grid": grid_to_dict(make(n))} for n, d in library().items()]}
-
-    @app.post("/api/simulate")
-    async def simulate(request: Request) -> Response:
-        body = await request.json()
-        grids = [grid_from_dict(grid) for grid in body["grids"]]
-        outcomes = engine(body.get("engine", "learned")).simulate(grids)
-        if frames.MEDIA_TYPE in request.headers.get("accept", ""):
-            return Response(frames.to_bytes(grids, outcomes), media_type=frames.MEDIA_TYPE)
-        import json
-        return Response(json.dumps({"results": [outcome_to_dict(o) for o in outcomes]}), media_type="application/json")
-
-    app.mount("/page", StaticFiles(directory=PAGE))
+    Raises:
+        InputError: a package of the studio is missing.
+    """
+    settings = settings or Settings()
+    # Without /docs: its scripts come from another site, which the page's policy does not allow.
+    app = FastAPI(title="SimuLearn studio", openapi_url=None, lifespan=_lifespan)
+    app.state.settings = settings
+    app.state.simulations = Simulations(settings)
+    app.state.jobs = Jobs(settings)
+    app.state.documents = Documents(settings)
+    app.state.turns = Turns(2, settings.waiting)
+    app.state.exports = Turns(1, settings.waiting)
+    for router in ROUTERS:
+        app.include_router(router)
+    serve_page(app)
+    _serve_description(app)
+    answer_errors(app)
+    # From the inside out.
+    app.add_middleware(_Compression)
+    app.add_middleware(BodyLimit, settings.body_bytes, {"/api/open": settings.file_bytes})
+    app.add_middleware(OwnOriginOnly, settings.hosts)
+    app.add_middleware(LastResort)
+    app.add_middleware(SecurityHeaders)
     return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    simulations: Simulations = app.state.simulations
+    simulations.start_warming()
+    yield
+    simulations.close()
+    app.state.jobs.close()
+
+
+def _serve_description(app: FastAPI) -> None:
+    """Add /openapi.json to an application."""
+
+    @cache
+    def description() -> dict[str, Any]:
+        return describe(app)
+
+    async def answer(request: Request) -> Response:
+        return json_response(description())
+
+    app.openapi = description  # type: ignore[method-assign]
+    app.add_route("/openapi.json", answer, include_in_schema=False)
+
+
+class _Compression:
+    """ASGI: compresses long text, and no frames, whose answer must not wait."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._plain = app
+        self._compressing = GZipMiddleware(app, minimum_size=ROOM, compresslevel=EFFORT)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request."""
+        accepted = dict(scope.get("headers", ())).get(b"accept", b"")
+        binary = frames.MEDIA_TYPE.encode() in accepted
+        await (self._plain if binary else self._compressing)(scope, receive, send)

@@ -1,21 +1,19 @@
-// Starts the page: the shapes of the library, the document, the simulation, then the views.
+// Starts the page: settings, the document of the address, then simulation and saving.
 
 import { createApp } from "/libraries/vue.js";
 import { App } from "./panels/app.js";
-import { library } from "./service/api.js";
+import { startKeys } from "./panels/keys.js";
+import { startFiles } from "./service/files.js";
+import { openAddress, startSaving } from "./service/saving.js";
+import { startServer } from "./service/server.js";
+import { startSettings } from "./service/settings.js";
 import { startSimulation } from "./service/simulation.js";
-import { load, state } from "./store.js";
-import { emptyDocument } from "./document/document.js";
 
-const FIRST = "twist"; // the design that a first visitor sees
-
-async function start() {
-  const { designs } = await library();
-  state.library = designs;
-  const first = designs.find(({ name }) => name === FIRST);
-  load({ ...emptyDocument(), name: first.name, grid: first.grid });
-  startSimulation();
-  createApp(App).mount("#studio");
-}
-
-start();
+startSettings();
+createApp(App).mount("#studio");
+startKeys();
+startFiles();
+startSaving();
+startSimulation();
+startServer();
+openAddress();

@@ -22,7 +22,13 @@ export const state = shallowReactive({
   library: [], // [{ name, description, grid }]
   material: null, // { name, section: {width, thickness}, limits: {...} }
   connection: "online", // online, offline
-  saving: "saved", // saved, saving, offline, conflict
+  saving: "unsaved", // unsaved (nothing to save yet), saved, saving, offline, conflict, failed
+  address: null, // id of the document in the page's address; null until there is something to save
+  started: false, // whether there is a document to show
+  server: null, // { version, ready, engines, formats, model } as the server says
+  pointer: null, // [x, y] in mm under the pointer, where the plan gives it
+  dialog: null, // { name, ... }: the open dialog and what it is about
+  notices: [], // [{ id, text, action: { label, run } | null }]: short confirmations
 });
 
 /** What is shown and how; not part of the document. */
@@ -37,6 +43,9 @@ export const view = reactive({
   theme: "system", // system, light, dark
   language: "en",
   pane: "both", // plan, shape, both; narrow windows show one
+  share: 0.5, // part of the width that the plan has beside the shape
+  side: true, // whether the side panel is open
+  tip: true, // whether the line for the first minute is shown
 });
 
 /** Whether the shown answer belongs to an earlier document. */
@@ -92,4 +101,16 @@ function show(document) {
       joints: selection.joints.filter((k) => k < joints.length),
       beams: selection.beams.filter((b) => b < beams.length),
     });
+}
+
+let notices = 0;
+
+/** Show a short confirmation, with something to do about it: { label, run }. */
+export function notify(text, action = null) {
+  notices += 1;
+  state.notices = [...state.notices.slice(-2), { id: notices, text, action }];
+}
+
+export function dismiss(id) {
+  state.notices = state.notices.filter((notice) => notice.id !== id);
 }

@@ -27,3 +27,13 @@ export function redone(history, document) {
   const past = [...history.past, { document, label: after.label }];
   return { document: after.document, history: { past, future: history.future.slice(0, -1), merge: null } };
 }
+
+/** Return the label of the edit that undo takes back, or null. */
+export function undoLabel(history) {
+  return history.past.at(-1)?.label ?? null;
+}
+
+/** Return the label of the edit that redo does again, or null. */
+export function redoLabel(history) {
+  return history.future.at(-1)?.label ?? null;
+}

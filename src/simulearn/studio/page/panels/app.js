@@ -1,9 +1,28 @@
-// The whole page: bar, plan, shape, side panel and status.
+// The whole page: bar, plan and shape, side panel, status, and what opens over them.
 
-import { h } from "/libraries/vue.js";
-import { Plan } from "../plan/plan.js";
-import { Shape } from "../shape/shape.js";
+import { h, watchEffect } from "/libraries/vue.js";
+import { state } from "../store.js";
+import { t } from "../text/text.js";
+import { Bar } from "./bar.js";
+import { Dialogs, Notices } from "./dialogs.js";
+import { Side } from "./side.js";
+import { Status } from "./status.js";
+import { Views } from "./views.js";
+
+/** What is shown until there is a document. */
+const starting = () => h("main", { class: "starting" }, [
+  h("h1", t("common.studio")),
+  h("p", { role: "status" }, t(state.connection === "offline" ? "common.waiting" : "common.starting")),
+]);
 
 export const App = {
-  render: () => h("main", { class: "views" }, [h(Plan), h(Shape)]),
+  setup() {
+    watchEffect(() => {
+      const { name } = state.document;
+      globalThis.document.title = name ? `${name} · SimuLearn` : t("common.studio");
+    });
+    return () => (state.started
+      ? h("div", { class: "page" }, [h(Bar), h(Views), h(Side), h(Status), h(Dialogs), h(Notices)])
+      : starting());
+  },
 };

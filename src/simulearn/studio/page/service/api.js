@@ -2,11 +2,14 @@
 
 import { MEDIA_TYPE, parseFrames } from "./frames.js";
 
-/** Why the server did not answer a question; `code` and `where` are for programs. */
+/** Why the server did not answer a question; `code` and `where` are for programs.
+ *
+ * revision and document: the newer one of a document that was changed elsewhere.
+ */
 export class Problem extends Error {
-  constructor({ status = 0, code = "", where = "", detail = "", errors = [] }) {
+  constructor({ status = 0, code = "", where = "", detail = "", errors = [], revision, document }) {
     super(detail);
-    Object.assign(this, { status, code, where, errors });
+    Object.assign(this, { status, code, where, errors, revision, document });
   }
 
   /** Whether the server was not reached at all. */
@@ -15,12 +18,13 @@ export class Problem extends Error {
   }
 }
 
-async function request(path, { method = "GET", body, accept = "application/json", signal } = {}) {
+async function request(path, { method = "GET", body, accept = "application/json", signal, keepalive } = {}) {
   let response;
   try {
     response = await fetch(path, {
       method,
       signal,
+      keepalive,
       headers: { Accept: accept, ...(body === undefined ? {} : { "Content-Type": "application/json" }) },
       body: body === undefined ? undefined : JSON.stringify(body),
     });
@@ -70,8 +74,10 @@ export async function jobFrames(id) {
 }
 
 export const loadDocument = (id) => json(`/api/documents/${id}`);
-export const saveDocument = (id, revision, document) =>
-  json(`/api/documents/${id}`, { method: "PUT", body: { revision, document } });
+
+/** Save a document that is based on a revision; last: the page is about to go. */
+export const saveDocument = (id, revision, document, { last = false } = {}) =>
+  json(`/api/documents/${id}`, { method: "PUT", body: { revision, document }, keepalive: last });
 
 /** Return {grid, goals, name, messages} of a file that the user opens. */
 export async function openFile(file) {

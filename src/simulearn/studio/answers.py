@@ -1,0 +1,185 @@
+"""What the API answers, for its description: types of the JSON that the routes return."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from simulearn.grid.gridfile import GridFile
+from simulearn.material import Identity
+from simulearn.studio.problems import MessageBody
+
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
+Corners = Annotated[list[Point], Field(min_length=8, max_length=8)]
+Section = Annotated[list[Point], Field(min_length=4, max_length=4)]
+Sections = Annotated[list[Section], Field(min_length=3, max_length=3)]
+
+
+class _Answer(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class GridsInOneRequest(_Answer):
+    """How much a request may hold."""
+
+    grids: int
+    joints: int
+    beams: int
+    beams_in_all: int
+    body_bytes: int
+
+
+class Version(_Answer):
+    """The program, and what it offers."""
+
+    version: str
+    api: int
+    ready: Annotated[bool, Field(description="false while kernels compile the first time")]
+    engines: list[str]
+    model: Identity
+    formats: Annotated[list[str], Field(description="endings of files of a result")]
+    limits: GridsInOneRequest
+
+
+class LibraryDesign(_Answer):
+    """A grid that morphs into a shape with a name."""
+
+    name: str
+    description: str
+    grid: GridFile
+
+
+class Library(_Answer):
+    """The library of grids."""
+
+    designs: list[LibraryDesign]
+
+
+class SectionSize(_Answer):
+    """Cross-section of a beam, mm."""
+
+    width: float
+    thickness: float
+    shell: float
+
+
+class DesignLimits(_Answer):
+    """Limits of a design, mm."""
+
+    beam_length: float
+    beam_net_length: float
+    actuator_length: float
+
+
+class MaterialFacts(_Answer):
+    """A material system."""
+
+    name: str
+    title: str
+    section: SectionSize
+    limits: DesignLimits
+
+
+class Materials(_Answer):
+    """The material systems by name."""
+
+    materials: list[MaterialFacts]
+
+
+class BedSize(_Answer):
+    """Where the nozzle may go, mm."""
+
+    width: float
+    depth: float
+    height: float
+    origin: Literal["corner", "centre"]
+
+
+class PrinterFacts(_Answer):
+    """A printer; mm and degrees Celsius."""
+
+    name: str
+    title: str
+    bed: BedSize
+    nozzle: float
+    filament: float
+    nozzle_most: float
+    bed_most: float
+
+
+class Printers(_Answer):
+    """The printers by name."""
+
+    printers: list[PrinterFacts]
+
+
+class ValidationAnswer(_Answer):
+    """What forbids a design, and what is unusual about it."""
+
+    errors: list[MessageBody]
+    warnings: list[MessageBody]
+
+
+class SnapFacts(_Answer):
+    """A sudden motion to another equilibrium."""
+
+    released: float
+    frame: int
+
+
+class ResultAnswer(_Answer):
+    """The twelve frames of a morphing grid; mm, s, +z up."""
+
+    schema_: Annotated[Literal["simulearn.result/1"], Field(alias="schema")]
+    grid: GridFile
+    engine: str
+    joints: Annotated[list[list[Corners]], Field(description="frame, joint, corner, xyz")]
+    beams: Annotated[list[list[Sections]], Field(description="frame, beam, section, corner, xyz")]
+    seconds: float
+    stable: bool
+    bound_mm: float | None
+    snaps: list[SnapFacts]
+    warnings: list[MessageBody]
+    material: Identity
+    model: Identity | None
+
+
+class FailureAnswer(_Answer):
+    """Why a design has no result."""
+
+    schema_: Annotated[Literal["simulearn.failure/1"], Field(alias="schema")]
+    code: str
+    where: str
+    message: str
+    hint: str
+
+
+class SimulateAnswer(_Answer):
+    """The outcome of each design, in their order."""
+
+    results: list[ResultAnswer | FailureAnswer]
+
+
+class Modification(_Answer):
+    """A single change of a design and what it leads to."""
+
+    words: str
+    part: Literal["joint", "actuator"]
+    indices: list[int]
+    error_mm: float
+    moved_mm: float
+
+
+class Suggestion(Modification):
+    """One of the best modifications that differ."""
+
+    grid: GridFile
+    points: Annotated[list[Point], Field(description="where the goals' vertices come to")]
+
+
+class RankAnswer(_Answer):
+    """All modifications of a design, the best first."""
+
+    error_mm: float
+    points: Annotated[list[Point], Field(description="where the goals' vertices are")]
+    best: list[Suggestion]
+    suggestions: list[Modification]

@@ -1,0 +1,110 @@
+"""Requests with JSON, read strictly, and what they hold.
+
+A design in a request is checked by the library itself, which says best what is wrong with it; here
+its model only describes it.
+"""
+
+import json
+from collections.abc import Callable, Coroutine
+from email.message import Message as Header
+from typing import Annotated, Any
+
+from anyio import to_thread
+from fastapi import Request, Response
+from fastapi.routing import APIRoute
+from pydantic import BaseModel, ConfigDict, Field, SkipValidation
+
+from simulearn.errors import InputError
+from simulearn.files import parse_json
+from simulearn.grid import grid_to_dict, make
+from simulearn.grid.gridfile import GridFile
+from simulearn.inverse import Task
+from simulearn.learn.common.bundle import shipped
+from simulearn.studio.problems import Problem
+from simulearn.studio.simulations import AT_ONCE
+
+SHORT = 2**16  # bytes of JSON that take a millisecond or less; more are read beside the loop
+
+GridBody = Annotated[GridFile, SkipValidation]
+
+
+class _TaskFile(Task):
+    """A grid, goals, what may change, and how to search."""
+
+    grid: GridFile  # type: ignore[assignment]
+
+
+TaskBody = Annotated[_TaskFile, SkipValidation]
+
+
+def _one_of(*names: str) -> Any:
+    """Return a field that is described as one of some names; who reads it says it better."""
+    return Field(json_schema_extra={"enum": list(names)})
+
+
+class SimulateBody(BaseModel):
+    """Designs to simulate, by which engine, and by which model where that is `learned`."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={"examples": [{"grids": [grid_to_dict(make("saddle", (1, 1)))]}]},
+    )
+
+    grids: Annotated[list[GridBody], Field(min_length=1)]
+    engine: Annotated[str, _one_of(*AT_ONCE)] = "learned"
+    model: Annotated[str, _one_of("default", *shipped())] | None = None
+
+
+class JsonRoute(APIRoute):
+    """A route whose body, if it has one, is strict JSON; to be named as a router's route class."""
+
+    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
+        """Return the function that answers a request."""
+        handle = super().get_route_handler()
+        if self.body_field is None:
+            return handle
+
+        async def handle_json(request: Request) -> Response:
+            if _media_type(request) != "application/json":
+                text = "the body is JSON; its Content-Type is application/json"
+                raise Problem(415, "content-type", text, "Content-Type")
+            if not await request.body():
+                raise Problem(400, "json", "the body is empty; it is a JSON object", "body")
+            strict = _StrictRequest(request.scope, request.receive)
+            strict._body = request._body
+            return await handle(strict)
+
+        return handle_json
+
+
+class _StrictRequest(Request):
+    """A request that refuses what JSON does not allow."""
+
+    async def json(self) -> Any:
+        """Return what the body holds."""
+        body = await self.body()
+        if len(body) <= SHORT:
+            return _parsed(body)
+        return await to_thread.run_sync(_parsed, body)
+
+
+def json_response(content: Any) -> Response:
+    """Return an answer in JSON; ASCII, so that any text can be in it."""
+    return Response(json.dumps(content, allow_nan=False), media_type="application/json")
+
+
+def _parsed(body: bytes) -> Any:
+    try:
+        return parse_json(body.decode())
+    except UnicodeDecodeError as error:
+        text = f"the body is not UTF-8 at byte {error.start}"
+        raise Problem(400, "json", text, f"byte {error.start}") from error
+    except InputError as error:
+        raise Problem(400, error.code, f"the body {error}", error.where) from error
+
+
+def _media_type(request: Request) -> str:
+    header = Header()
+    header["content-type"] = request.headers.get("content-type", "")
+    return header.get_content_type()

@@ -1,0 +1,3 @@
+import { h } from "/libraries/vue.js";
+
+export const Check = { render: () => h("div", { class: "check" }) };

@@ -1,0 +1,36 @@
+// The frame of every dialog: a native <dialog>, which traps the focus and gives it back.
+
+import { h, onBeforeUnmount, onMounted, ref, useId } from "/libraries/vue.js";
+import { state } from "../store.js";
+import { t } from "../text/text.js";
+import { iconButton } from "./controls.js";
+
+/** Close the open dialog. */
+export function close() {
+  state.dialog = null;
+}
+
+/** Slots: default, and actions at its bottom. */
+export const Dialog = {
+  props: { title: String, kind: String },
+  setup(props, { slots }) {
+    const root = ref(null);
+    const id = useId();
+    onMounted(() => root.value.showModal());
+    onBeforeUnmount(() => root.value.close());
+    return () => h("dialog", {
+      ref: root, class: ["dialog", props.kind], "aria-labelledby": id,
+      onClose: close,
+      onClick: (event) => event.target === root.value && close(), // beside it
+    }, [
+      h("div", { class: "dialog-frame" }, [
+        h("div", { class: "dialog-head" }, [
+          h("h2", { id }, props.title),
+          iconButton("close", t("common.close"), close),
+        ]),
+        h("div", { class: "dialog-body" }, slots.default()),
+        slots.actions && h("div", { class: "dialog-actions" }, slots.actions()),
+      ]),
+    ]);
+  },
+};

@@ -1,0 +1,101 @@
+// What opens over the page: the dialog of state.dialog, and short confirmations.
+
+import { h, onBeforeUnmount, onMounted, ref, useId } from "/libraries/vue.js";
+import { dismiss, state } from "../store.js";
+import { t } from "../text/text.js";
+import { keepMine, takeOther } from "../service/saving.js";
+import { button, iconButton } from "./controls.js";
+import { ExportDialog } from "./export.js";
+import { HelpDialog } from "./help.js";
+import { LibraryDialog } from "./library.js";
+import { Dialog, close } from "./dialog.js";
+
+const SHOWN = 6000; // ms that a confirmation stays
+
+const MessageDialog = {
+  props: { title: String, text: String, messages: Array },
+  render() {
+    return h(Dialog, { title: this.title, kind: "narrow" }, {
+      default: () => [
+        this.text && h("p", this.text),
+        this.messages?.length > 0 && h("ul", { class: "plain-messages" },
+          this.messages.map(({ where, message }, i) => h("li", { key: i }, [
+            where && h("strong", `${where}: `), message,
+          ]))),
+      ],
+      actions: () => button(t("common.close"), close, { kind: "primary" }),
+    });
+  },
+};
+
+const ConflictDialog = {
+  props: { theirs: Object },
+  render() {
+    const settle = (how) => () => {
+      close();
+      how(this.theirs);
+    };
+    return h(Dialog, { title: t("common.conflictTitle"), kind: "narrow" }, {
+      default: () => h("p", t("common.conflictText")),
+      actions: () => [
+        button(t("common.conflictMine"), settle(keepMine), { kind: "primary" }),
+        button(t("common.conflictTheirs"), settle(takeOther)),
+      ],
+    });
+  },
+};
+
+const LinkDialog = {
+  props: { link: String },
+  setup(props) {
+    const id = useId();
+    const field = ref(null);
+    onMounted(() => field.value?.select());
+    return () => h(Dialog, { title: t("common.copyLink"), kind: "narrow" }, {
+      default: () => [
+        h("label", { for: id }, t("common.linkByHand")),
+        h("textarea", { id, ref: field, class: "link-text", readonly: true, rows: 4, value: props.link }),
+      ],
+      actions: () => button(t("common.close"), close, { kind: "primary" }),
+    });
+  },
+};
+
+const DIALOGS = {
+  message: MessageDialog, conflict: ConflictDialog, link: LinkDialog,
+  library: LibraryDialog, export: ExportDialog, help: HelpDialog,
+};
+
+export const Dialogs = {
+  render() {
+    const { name, ...props } = state.dialog ?? {};
+    return name ? h(DIALOGS[name], { key: name, ...props }) : null;
+  },
+};
+
+const Notice = {
+  props: { notice: Object },
+  setup(props) {
+    let timer = 0;
+    const start = () => { timer = setTimeout(() => dismiss(props.notice.id), SHOWN); };
+    const stop = () => clearTimeout(timer);
+    onMounted(start);
+    onBeforeUnmount(stop);
+    return () => {
+      const { id, text, action } = props.notice;
+      return h("div", { class: "notice", onPointerenter: stop, onPointerleave: start, onFocusin: stop, onFocusout: start }, [
+        h("p", text),
+        action && button(action.label, () => {
+          dismiss(id);
+          action.run();
+        }, { kind: "quiet small" }),
+        iconButton("close", t("common.close"), () => dismiss(id), { class: "icon-button small" }),
+      ]);
+    };
+  },
+};
+
+export const Notices = {
+  render: () => h("div", { class: "notices", role: "status" },
+    state.notices.map((notice) => h(Notice, { key: notice.id, notice }))),
+};

@@ -1,0 +1,3 @@
+import { h } from "/libraries/vue.js";
+
+export const Goals = { render: () => h("div", { class: "goals" }) };

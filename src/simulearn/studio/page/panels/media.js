@@ -1,0 +1,13 @@
+// Media queries as values that a render function can depend on.
+
+import { onBeforeUnmount, ref } from "/libraries/vue.js";
+
+/** Return a ref that says whether the media query holds. */
+export function useMedia(query) {
+  const list = globalThis.matchMedia(query);
+  const holds = ref(list.matches);
+  const change = () => { holds.value = list.matches; };
+  list.addEventListener("change", change);
+  onBeforeUnmount(() => list.removeEventListener("change", change));
+  return holds;
+}

@@ -1,0 +1,59 @@
+// What is wrong with the grid, where, and what mends it. Errors keep it from being simulated.
+
+import { h, ref } from "/libraries/vue.js";
+import { repair } from "../document/repairs.js";
+import { edit, select, state } from "../store.js";
+import { t } from "../text/text.js";
+import { button } from "./controls.js";
+import { icon } from "./icons.js";
+import { partsOf } from "./parts.js";
+
+const FEW = 4; // messages that are shown before "show all"
+
+function entry(kind, message, i) {
+  const { grid } = state.document;
+  const fresh = state.check.document.grid === grid; // numbers in messages are those of the checked grid
+  const parts = partsOf(message, grid);
+  const somewhere = fresh && parts.joints.length + parts.beams.length > 0;
+  const hover = parts.joints.length ? { joint: parts.joints[0] } : { beam: parts.beams[0] };
+  const show = () => { state.hover = hover; };
+  const hide = () => { state.hover = null; };
+  const limits = { ...state.material?.limits, ...state.material?.section };
+  const mend = fresh && repair(message, state.document, state.check.netLengths, limits);
+  const label = mend && t(mend.label, mend.values);
+  return h("li", { key: `${message.code} ${message.where} ${i}`, class: ["message", kind] }, [
+    icon(kind, 18),
+    h("div", { class: "message-body" }, [
+      somewhere
+        ? h("button", {
+          type: "button", class: "message-text", title: t("common.showPlace"),
+          onClick: () => select(parts), onFocus: show, onBlur: hide, onPointerenter: show, onPointerleave: hide,
+        }, message.message)
+        : h("p", { class: "message-text" }, message.message),
+      mend && button(label, () => edit(mend.apply, { label }), { kind: "small" }),
+    ]),
+  ]);
+}
+
+/** Return a list of messages of one kind, with a heading and at first the first few. */
+function messageList(kind) {
+  return {
+    setup() {
+      const all = ref(false);
+      return () => {
+        const messages = state.check?.[`${kind}s`] ?? [];
+        if (messages.length === 0) return null;
+        const shown = all.value ? messages : messages.slice(0, FEW);
+        const n = messages.length;
+        return h("section", { class: ["problems", kind], "aria-label": t(`common.${kind}s`) }, [
+          h("h2", t(n === 1 ? `common.${kind}Count` : `common.${kind}sCount`, { n })),
+          h("ul", { class: "messages" }, shown.map((message, i) => entry(kind, message, i))),
+          shown.length < n && button(t("common.showAll", { n }), () => { all.value = true; }, { kind: "quiet small" }),
+        ]);
+      };
+    },
+  };
+}
+
+export const Errors = messageList("error");
+export const Warnings = messageList("warning");

@@ -1,0 +1,16 @@
+// Numbers as people write and read them.
+
+/** Return a number with at most `digits` decimals, as the language writes it. */
+export function formatNumber(value, language = "en", digits = 1) {
+  if (!Number.isFinite(value)) return "–";
+  const rounded = Number(value.toFixed(digits)) || 0; // no minus before a zero
+  return rounded.toLocaleString(language, { maximumFractionDigits: digits, useGrouping: false });
+}
+
+/** Return the number of a text with a point or a comma and perhaps a unit, or null if it is none. */
+export function parseNumber(text) {
+  const match = /^\s*([+\-−–]?)\s*(\d+(?:[.,]\d*)?|[.,]\d+)\s*(?:mm|%|°)?\s*$/.exec(text);
+  if (!match) return null;
+  const size = Number(match[2].replace(",", "."));
+  return match[1] === "" || match[1] === "+" ? size : -size;
+}

@@ -1,0 +1,1 @@
+"""The routes of the REST API; each module has a `router`."""

@@ -1,0 +1,95 @@
+"""What the server is and has: its version, the library, material systems and printers."""
+
+from functools import cache
+from typing import Any
+
+from fastapi import APIRouter, Request
+
+from simulearn import __version__
+from simulearn.fabricate import load_printer, printers
+from simulearn.grid import grid_to_dict, library, make
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.material import load_material, names
+from simulearn.outputs import WRITERS
+from simulearn.studio.answers import Library, Materials, Printers, Version
+from simulearn.studio.bodies import JsonRoute
+from simulearn.studio.simulations import AT_ONCE
+
+API = 1  # rises when a change breaks other programs
+MATERIAL = "pla-hot-water"  # whose nozzle a printer has that does not name its own
+
+router = APIRouter(route_class=JsonRoute, tags=["about"])
+
+
+@router.get("/api/version", response_model=Version)
+async def version(request: Request) -> Any:
+    """Return what the server is, and whether its kernels are compiled."""
+    state = request.app.state
+    settings = state.settings
+    limits = ("grids", "joints", "beams", "beams_in_all", "body_bytes")
+    return {
+        "version": __version__,
+        "api": API,
+        "ready": state.simulations.ready,
+        "engines": list(AT_ONCE),
+        "model": _model(),
+        "formats": list(WRITERS),
+        "limits": {name: getattr(settings, name) for name in limits},
+    }
+
+
+@router.get("/api/library", response_model=Library, response_model_exclude_none=True)
+async def library_() -> Any:
+    """Return the grids of the library."""
+    return _library()
+
+
+@router.get("/api/materials", response_model=Materials)
+async def materials() -> Any:
+    """Return the material systems that come with SimuLearn."""
+    return _materials()
+
+
+@router.get("/api/printers", response_model=Printers)
+async def printers_() -> Any:
+    """Return the printers that come with SimuLearn."""
+    return _printers()
+
+
+@cache
+def _model() -> dict[str, str]:
+    return bundle_of("default").identity.model_dump()
+
+
+@cache
+def _library() -> dict[str, Any]:
+    designs = [
+        {"name": name, "description": words, "grid": grid_to_dict(make(name))}
+        for name, words in library().items()
+    ]
+    return {"designs": designs}
+
+
+@cache
+def _materials() -> dict[str, Any]:
+    facts = {"name", "title", "section", "limits"}
+    return {"materials": [load_material(name).model_dump(include=facts) for name in names()]}
+
+
+@cache
+def _printers() -> dict[str, Any]:
+    nozzle = load_material(MATERIAL).print.nozzle
+    return {
+        "printers": [
+            {
+                "name": printer.name,
+                "title": printer.title,
+                "bed": printer.bed.model_dump(),
+                "nozzle": printer.print.get("nozzle", nozzle),
+                "filament": printer.extruder.filament,
+                "nozzle_most": printer.temperature.nozzle_most,
+                "bed_most": printer.temperature.bed_most,
+            }
+            for printer in map(load_printer, printers())
+        ]
+    }
