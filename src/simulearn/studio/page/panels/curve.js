@@ -2,34 +2,11 @@
 
 import { h } from "/libraries/vue.js";
 import { mm, number } from "../service/format.js";
+import { bestSoFar, roundUp } from "../service/steps.js";
 import { t } from "../text/text.js";
 
 const SIZE = { width: 300, height: 120 }; // units of the picture, about pixels
 const EDGE = { left: 34, right: 10, top: 12, bottom: 22 };
-const MOST_POINTS = 300; // of the line; more cannot be told apart
-
-/** Return the largest of 1, 2, 5, 10, ... times a power of ten that is at least `most`. */
-export function roundUp(most) {
-  if (!(most > 0)) return 1;
-  const power = 10 ** Math.floor(Math.log10(most));
-  return [1, 2, 5, 10].map((n) => n * power).find((value) => value >= most * (1 - 1e-9));
-}
-
-/** Return the corners of the line of best errors so far, as steps: [[designs, mm], ...]. */
-export function bestSoFar(steps) {
-  const points = [];
-  let best = Infinity;
-  for (const { designs, error_mm: error } of steps) {
-    if (error < best) {
-      if (best < Infinity) points.push([designs, best]);
-      best = error;
-      points.push([designs, best]);
-    }
-  }
-  if (steps.length) points.push([steps.at(-1).designs, best]);
-  const stride = Math.ceil(points.length / MOST_POINTS);
-  return points.filter((_, k) => k % stride === 0 || k === points.length - 1);
-}
 
 /** Return the curve of a search's steps. at: a number of designs to mark with a point, or null. */
 export function curve(steps, at = null) {
