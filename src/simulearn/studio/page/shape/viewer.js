@@ -144,6 +144,8 @@ export function createViewer(container, { events = {}, still = () => false } = {
 
   const viewer = {
     stage, camera, body, project, rayAt,
+    /** Return mm that one pixel is at a point [x, y, z]. */
+    pixel: (point) => camera.pixel(new THREE.Vector3(...point)),
     /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
     show(result, grid = null) {
       body.show(result, grid);
