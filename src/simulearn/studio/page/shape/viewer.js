@@ -47,6 +47,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
   });
   const body = createBody();
   const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong" });
+  ghost.setFrame(0);
   const other = createBody({ opacity: 0.34, edges: 0.7, one: "target" });
   const ground = createGround();
   const print = createPrint();
