@@ -10,9 +10,9 @@ const EDGE = { left: 34, right: 10, top: 12, bottom: 22 };
 
 /** Return the curve of a search's steps. at: a number of designs to mark with a point, or null. */
 export function curve(steps, at = null) {
-  const points = bestSoFar(steps);
+  const { points, corrections } = bestSoFar(steps);
   if (points.length === 0) return null;
-  const most = roundUp(points[0][1]);
+  const most = roundUp(Math.max(...points.map(([, error]) => error)));
   const designs = Math.max(1, points.at(-1)[0]);
   const x = (value) => EDGE.left + (value / designs) * (SIZE.width - EDGE.left - EDGE.right);
   const y = (value) => SIZE.height - EDGE.bottom - (value / most) * (SIZE.height - EDGE.top - EDGE.bottom);
@@ -32,6 +32,9 @@ export function curve(steps, at = null) {
     h("text", { class: "curve-number", x: EDGE.left, y: SIZE.height - 5 }, "0"),
     h("text", { class: "curve-number", x: SIZE.width - EDGE.right, y: SIZE.height - 5, "text-anchor": "end" },
       `${number(designs)} ${t("panels.axisDesigns")}`),
+    ...corrections.map((n) => h("line", {
+      class: "curve-correction", x1: x(n), x2: x(n), y1: EDGE.top, y2: SIZE.height - EDGE.bottom,
+    }, [h("title", t("panels.correction"))])),
     h("path", { class: "curve-path", d: path }),
     h("circle", { class: "curve-mark", cx: x(at === null ? marked[0] : at), cy: y(marked[1]), r: 3.5 }),
   ]);

@@ -51,7 +51,7 @@ function running({ state: now, steps, until, passed, lost }) {
   const last = steps.at(-1);
   const words = { queued: "searchQueued", stopping: "searchStopping" }[now] ?? (last ? "searchRunning" : "searchReady");
   return h("div", { class: "search-running" }, [
-    last && h("p", { class: "measure-value numbers" }, mm(Math.min(...steps.map(({ error_mm: error }) => error)))),
+    last && h("p", { class: "measure-value numbers" }, mm(last.error_mm)),
     last && h("p", { class: "measure-name" }, t("panels.best")),
     last && curve(steps),
     h("div", {

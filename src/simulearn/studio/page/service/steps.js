@@ -12,20 +12,25 @@ export function roundUp(most) {
   return [1, 2, 5, 10].map((n) => n * power).find((value) => value >= most * (1 - 1e-9));
 }
 
-/** Return the corners of the line of best errors so far, as steps: [[designs, mm], ...]. */
+/** Return the line of the best error so far, as steps: {points: [[designs, mm], ...], corrections}.
+ *
+ * corrections: the numbers of designs at which finite elements moved the targets; the error then is
+ * measured against those, and begins anew.
+ */
 export function bestSoFar(steps) {
   const points = [];
-  let best = Infinity;
-  for (const { designs, error_mm: error } of steps) {
-    if (error < best) {
-      if (best < Infinity) points.push([designs, best]);
-      best = error;
-      points.push([designs, best]);
-    }
+  const corrections = [];
+  let [best, phase] = [Infinity, steps[0]?.phase];
+  for (const { designs, error_mm: error, phase: now } of steps) {
+    if (now === phase && error >= best) continue;
+    if (best < Infinity) points.push([designs, best]);
+    if (now !== phase) corrections.push(designs);
+    [best, phase] = [error, now];
+    points.push([designs, best]);
   }
   if (steps.length) points.push([steps.at(-1).designs, best]);
   const stride = Math.ceil(points.length / MOST_POINTS);
-  return points.filter((_, k) => k % stride === 0 || k === points.length - 1);
+  return { points: points.filter((_, k) => k % stride === 0 || k === points.length - 1), corrections };
 }
 
 /** Return the designs on the way of a search, each different from the one before; the best is last.
