@@ -1,9 +1,9 @@
 // What can be done about an error or warning of the server's check, in one step.
 
-import { beamLength } from "./measure.js";
+import { beamLength, beamsAt } from "./measure.js";
 import { distance, nearestOnSegment } from "./geometry.js";
 import { mergeJoints, removeParts, setActuators, setFixed } from "./edit.js";
-import { TOLERANCE, splitBeam } from "./drawing.js";
+import { TOLERANCE, settle, splitBeam } from "./drawing.js";
 import { nearestOf, piecesOf, rebuild } from "./numbering.js";
 import { lasting, partsOf } from "./structure.js";
 import { weave } from "./weaving.js";
@@ -19,8 +19,8 @@ const REPAIRS = {
   "joint-outline": untangle,
   overlap: join,
   "fixed-removed": fixOther,
-  disconnected: keepLargest,
-  "dangling-beam": removeBeam,
+  disconnected: joinOrKeepLargest,
+  "dangling-beam": joinOrRemove,
   "unused-joint": removeJoint,
 };
 
@@ -142,8 +142,8 @@ function fixOther({ document }) {
   return k === null ? null : { label: "repairs.fix", values: { joint: k }, apply: (one) => setFixed(one, k) };
 }
 
-/** Keep the part with the most beams, of several the fixed joint's. */
-function keepLargest({ document }) {
+/** Join the parts where they touch or cross; else keep the one with most beams, the fixed joint's of two. */
+function joinOrKeepLargest({ document, limits }) {
   const { grid } = document;
   const part = partsOf(grid);
   const count = new Map();
@@ -153,6 +153,9 @@ function keepLargest({ document }) {
   const stays = count.get(own) === most ? own : [...count.keys()].find((k) => count.get(k) === most);
   const beams = [...grid.beams.keys()].filter((b) => part[grid.beams[b][0]] !== stays);
   if (beams.length === 0) return null;
+  const joints = [...new Set(beams.flatMap((b) => grid.beams[b]))];
+  const join = touching(joints, limits);
+  if (join(document) !== document) return { label: "repairs.joinParts", apply: join };
   return {
     label: "repairs.removeBeams",
     values: { count: beams.length },
@@ -160,9 +163,34 @@ function keepLargest({ document }) {
   };
 }
 
-function removeBeam({ number }) {
-  const apply = (one) => removeParts(one, { beams: [number] });
-  return { label: "repairs.removeBeam", values: { beam: number }, apply };
+/** Join a beam's loose ends to what they touch; else remove it. */
+function joinOrRemove({ document, number, limits }) {
+  const { grid } = document;
+  if (!(number in grid.beams)) return null;
+  const loose = grid.beams[number].filter((k) => beamsAt(grid, k).length === 1);
+  const join = touching(loose, limits);
+  const values = { beam: number };
+  if (join(document) !== document) return { label: "repairs.joinBeam", values, apply: join };
+  const beams = [number, ...hanging(grid, number)];
+  const apply = (one) => removeParts(one, { beams });
+  if (beams.length === 1) return { label: "repairs.removeBeam", values, apply };
+  return { label: "repairs.removeDangling", values: { count: beams.length }, apply };
+}
+
+/** Return the dangling beams that would be a part of their own without beam b. */
+function hanging(grid, b) {
+  const stay = lasting(grid).beams;
+  const part = partsOf({ ...grid, beams: grid.beams.filter((_, n) => n !== b) });
+  const base = new Set([...stay].map((n) => part[grid.beams[n][0]]));
+  const [i, j] = grid.beams[b];
+  if (base.has(part[i]) === base.has(part[j])) return [];
+  const loose = part[base.has(part[i]) ? j : i];
+  return [...grid.beams.keys()].filter((n) => n !== b && part[grid.beams[n][0]] === loose);
+}
+
+/** Return the change that joins joints and their beams to all that they touch or cross. */
+function touching(joints, { width = WIDTH }) {
+  return (document) => settle(document, joints, width / 2);
 }
 
 function removeJoint({ number }) {
