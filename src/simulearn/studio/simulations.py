@@ -36,7 +36,8 @@ class Simulations:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self._pool = ThreadPoolExecutor(settings.simulations, "simulation")
+        self._threads = settings.simulations
+        self._pool = self._new_pool()
         self._most = settings.simulations + settings.waiting
         self._tokens: set[threading.Event] = set()  # of all that run or wait
         self._warming, self._warm = threading.Lock(), threading.Event()
@@ -94,10 +95,14 @@ class Simulations:
                 answer.cancel()
 
     def close(self) -> None:
-        """Stop what runs, and take nothing more."""
+        """Stop what runs and waits; the same application may be started again."""
+        pool, self._pool = self._pool, self._new_pool()
         for token in list(self._tokens):
             token.set()
-        self._pool.shutdown(wait=False, cancel_futures=True)
+        pool.shutdown(wait=False, cancel_futures=True)
+
+    def _new_pool(self) -> ThreadPoolExecutor:
+        return ThreadPoolExecutor(self._threads, "simulation")
 
     def _work(self, work: Callable[[Cancel], T], cancel: threading.Event) -> T:
         self.warm()

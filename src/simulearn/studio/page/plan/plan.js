@@ -1,8 +1,234 @@
 // The plan: the flat grid seen from above, where it is drawn and changed.
 
-import { h } from "/libraries/vue.js";
+import { h, onBeforeUnmount, onMounted, watch } from "/libraries/vue.js";
 import { state } from "../store.js";
+import { t } from "../text/text.js";
+import {
+  copySelection, duplicateSelection, flipBeams, mirrorSelection, moveFocus, nudge, paste, redoLast,
+  removeSelection, rotateSelection, selectAll, setBeams, stepBeams, undoLast, useTool, hasSelection,
+} from "./actions.js";
+import { anyVisible, toScreen } from "./camera.js";
+import { clearMarks, editor, fitAll, setElement } from "./editor.js";
+import { direction, placeOf, tabStop } from "./focus.js";
+import { Grid, ScaleBar } from "./grid.js";
+import { isSelected, only, toggled } from "./hit.js";
+import { command, listenKeys, nudgeStep } from "./keys.js";
+import { Marks } from "./marks.js";
+import { Menu, openMenu } from "./menu.js";
+import { Over, Under } from "./overlay.js";
+import { Parts } from "./parts.js";
+import { listen } from "./pointer.js";
+import { Popover } from "./popover.js";
+import { Readout } from "./readout.js";
+import { Toolbar, Zooms } from "./toolbar.js";
+import { currentTool, TOOLS } from "./tools/tools.js";
+import { select } from "../store.js";
 
 export const Plan = {
-  render: () => h("section", { class: "plan", "aria-label": "Plan" }, `${state.document.grid.beams.length} beams`),
+  setup() {
+    let section = null;
+    let svg = null;
+    let space = false; // whether the space bar is down, to move the plan
+    const ends = [];
+
+    onMounted(() => {
+      setElement(svg);
+      const sized = new ResizeObserver(([{ contentRect: { width, height } }]) => resize(width, height));
+      sized.observe(svg);
+      ends.push(
+        () => sized.disconnect(),
+        listen(svg, { openMenu, isSpaceDown: () => space }),
+        listenKeys(section, react),
+      );
+      const released = ({ code }) => {
+        if (code === "Space") setSpace(false);
+      };
+      document.addEventListener("keyup", released);
+      ends.push(() => document.removeEventListener("keyup", released));
+    });
+    onBeforeUnmount(() => {
+      currentTool().cancel();
+      for (const end of ends) end();
+    });
+
+    watch(() => state.tool, (now, before) => {
+      TOOLS[before]?.cancel();
+      currentTool().enter?.();
+      state.hover = null;
+    });
+    watch(() => state.document, fitNew);
+
+    function setSpace(down) {
+      space = down;
+      svg.classList.toggle("grab", down);
+    }
+
+    /** Run what a key stands for; return whether it was used. */
+    function react(event) {
+      const onPart = svg.contains(event.target) || event.target === document.body;
+      if (event.key === " " && onPart) {
+        if (!event.repeat) setSpace(true);
+        return true;
+      }
+      const inButton = event.target.closest?.("button");
+      if (!(inButton && (event.key === "Enter" || event.key === "Tab")) && currentTool().key(event)) return true;
+      if (event.key === "Enter" && svg.contains(event.target)) return pick(event);
+      const name = command(event);
+      if (!name || (inButton && (name === "arrow" || name === "focus"))) return false;
+      return run(name, event);
+    }
+
+    function pick(event) {
+      const part = tabStop(state.document.grid, editor.focus);
+      if (!part) return false;
+      if (event.shiftKey) select(toggled(state.selection, part));
+      else select(isSelected(state.selection, part) ? {} : only(part));
+      if (part.beam !== undefined && isSelected(state.selection, part)) editor.popover = part;
+      return true;
+    }
+
+    function menuAtFocus() {
+      const part = tabStop(state.document.grid, editor.focus);
+      const place = placeOf(state.document.grid, part) ?? [0, 0];
+      openMenu(toScreen(editor.camera, place), part);
+    }
+
+    const onContextmenu = (event) => {
+      event.preventDefault();
+      if (event.button !== 2 || event.pointerType === "touch") return; // keys and fingers open it elsewhere
+      const { left, top } = svg.getBoundingClientRect();
+      currentTool().cancel();
+      openMenu([event.clientX - left, event.clientY - top], state.hover?.goal === undefined ? state.hover : null);
+    };
+
+    const onFocusin = ({ target }) => {
+      const part = target.closest?.("[role=option]");
+      if (!part) return;
+      const { joint, beam } = part.dataset;
+      editor.focus = joint !== undefined ? { joint: Number(joint) } : { beam: Number(beam) };
+    };
+
+    function run(name, event) {
+      if (name === "arrow" || name === "focus") {
+        if (name === "focus" || !hasSelection()) moveFocus(event.key);
+        else nudge(direction(event.key).map((x) => x * nudgeStep(event)));
+        return true;
+      }
+      if (name === "menu") {
+        menuAtFocus();
+        return true;
+      }
+      const [verb, value] = name.split(" ");
+      COMMANDS[verb](value);
+      return true;
+    }
+
+    return () => h("section", {
+      class: ["plan", `tool-${state.tool}`], "aria-label": t("plan.title"),
+      ref: (el) => {
+        section = el;
+      },
+    }, [
+      h("svg", {
+        class: ["plan-canvas", { panning: editor.panning, dragging: editor.dragging }],
+        role: "listbox", "aria-multiselectable": "true", "aria-label": t("plan.parts"),
+        tabindex: state.document.grid.joints.length ? -1 : 0, onContextmenu, onFocusin,
+        ref: (el) => {
+          svg = el;
+        },
+      }, [h(Patterns), h(Grid), h(World)]),
+      h(Empty), h(Toolbar), h(Hint), h(Zooms), h(ScaleBar), h(Readout), h(Popover), h(Menu), h(Message),
+    ]);
+  },
 };
+
+const COMMANDS = {
+  select: () => useTool("select"),
+  draw: () => useTool("draw"),
+  split: () => useTool("split"),
+  fix: () => useTool("fix"),
+  fit: fitAll,
+  longer: () => stepBeams(1),
+  shorter: () => stepBeams(-1),
+  quarters: (count) => setBeams(Number(count) / 4),
+  flip: () => flipBeams(),
+  delete: removeSelection,
+  mirror: mirrorSelection,
+  rotate: (degrees) => rotateSelection(Number(degrees)),
+  undo: undoLast,
+  redo: redoLast,
+  all: selectAll,
+  copy: copySelection,
+  paste,
+  duplicate: duplicateSelection,
+};
+
+/** Keep the view's middle when its size changes; a fitted view stays fitted. */
+function resize(width, height) {
+  if (width === 0 || height === 0) return; // hidden
+  const { camera, size } = editor;
+  editor.size = { width, height };
+  if (editor.fitted) fitAll();
+  else editor.camera = { ...camera, x: camera.x + (width - size.width) / 2, y: camera.y + (height - size.height) / 2 };
+}
+
+/** Show all of a document that is new, or of which nothing would be seen. */
+function fitNew(document) {
+  const { past, future } = state.history;
+  const fresh = past.length === 0 && future.length === 0 && !editor.dragging;
+  const { joints } = document.grid;
+  if (fresh || (joints.length && !editor.dragging && !anyVisible(editor.camera, editor.size, joints))) {
+    clearMarks();
+    editor.popover = null;
+    fitAll();
+  }
+}
+
+/** All that is drawn in mm; the camera changes two attributes and nothing inside. */
+const World = {
+  render() {
+    const { x, y, scale } = editor.camera;
+    return h("g", {
+      class: ["plan-world", { far: scale < 1.7 }],
+      transform: `matrix(${scale} 0 0 ${-scale} ${x} ${y})`,
+      style: { "--scale": scale },
+    }, [h(Under), h(Parts), h(Marks), h(Over)]);
+  },
+};
+
+/** Hatching that tells top from bottom where colours do not: lines for top, dots for bottom. */
+const Patterns = {
+  render: () => h("defs", [
+    h("pattern", { id: "plan-top", width: 2.4, height: 2.4, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+      h("rect", { width: 0.7, height: 2.4 })),
+    h("pattern", { id: "plan-bottom", width: 2.4, height: 2.4, patternUnits: "userSpaceOnUse" },
+      h("circle", { cx: 1.2, cy: 1.2, r: 0.48 })),
+  ]),
+};
+
+const Empty = {
+  render() {
+    if (state.document.grid.joints.length || editor.line?.fixed) return null;
+    return h("div", { class: "plan-empty" }, [h("strong", t("plan.emptyTitle")), h("span", t("plan.emptyHint"))]);
+  },
+};
+
+/** What the tool in use expects; while a line is drawn also a button that ends it, for fingers. */
+const Hint = {
+  render() {
+    const name = state.tool === "draw" && !editor.line?.fixed ? "DrawStart" : state.tool[0].toUpperCase() + state.tool.slice(1);
+    if (state.tool === "select" && state.selection.beams.length === 0) return null;
+    return h("div", { class: "plan-hint" }, [
+      h("span", t(`plan.hint${name}`)),
+      editor.line?.fixed > 1
+        ? h("button", { type: "button", onClick: () => currentTool().finish() }, t("plan.done"))
+        : null,
+    ]);
+  },
+};
+
+/** The last edit in words, read by screen readers. */
+const Message = {
+  render: () => h("p", { class: "plan-message", role: "status", "aria-live": "polite" }, editor.message),
+};
+
