@@ -28,6 +28,9 @@ export const state = shallowReactive({
   server: null, // { version, ready, engines, formats, model } as the server says
   pointer: null, // [x, y] in mm under the pointer, where the plan gives it
   dialog: null, // { name, ... }: the open dialog and what it is about
+  pickVertex: null, // function: the shape view calls it with the vertex that is picked next
+  suggestions: null, // { document, state, error, cards, problem }: single changes; see service/suggestions.js
+  search: null, // { document, state, steps, result, ... }: the automatic search; see service/search.js
   notices: [], // [{ id, text, action: { label, run } | null }]: short confirmations
 });
 
@@ -45,6 +48,7 @@ export const view = reactive({
   pane: "both", // plan, shape, both; narrow windows show one
   share: 0.5, // part of the width that the plan has beside the shape
   side: true, // whether the side panel is open
+  compare: true, // whether the tab "check" draws the shape by finite elements over the answer
   tip: true, // whether the line for the first minute is shown
 });
 

@@ -111,7 +111,7 @@ export const Outline = {
       const key = joints.length ? keyOf("joints", joints.at(-1)) : beams.length ? keyOf("beams", beams.at(-1)) : null;
       if (!key || root.value?.contains(globalThis.document.activeElement)) return;
       focused.value = key;
-      nextTick(() => reveal(root.value, element(key)));
+      nextTick(() => reveal(root.value?.parentElement, element(key)));
     }, { immediate: true });
 
     const row = (kind, words) => (_, number) => {

@@ -79,6 +79,7 @@ export const Views = {
     return () => h("main", { class: "main" }, [
       h("h1", { class: "hidden" }, t("common.studio")),
       state.server && !state.server.ready && h("p", { class: "tip", role: "status" }, t("common.preparing")),
+      stacked.value && h(PaneSwitch),
       view.tip && h("div", { class: "tip" }, [
         h("p", t("common.tip")),
         iconButton("close", t("common.tipClose"), () => { view.tip = false; }, { class: "icon-button small" }),

@@ -64,7 +64,9 @@ export const gcode = (grids, printer, names) => post("/api/gcode", { grids, prin
 
 export const startOptimize = (task) => post("/api/optimize", task);
 export const startFea = (grids) => post("/api/fea", { grids });
-export const job = (id, signal) => json(`/api/jobs/${id}`, { signal });
+
+/** Return how far a job is, with the steps that are new after the first `since`. */
+export const job = (id, { since = 0 } = {}) => json(`/api/jobs/${id}?since=${since}`);
 export const cancelJob = (id) => request(`/api/jobs/${id}`, { method: "DELETE" });
 
 /** Return the results of a job that is done, as `parseFrames` gives them. */

@@ -1,8 +1,12 @@
 // Numbers as people write and read them.
 
-/** Return a number with at most `digits` decimals, as the language writes it. */
+/** Return a number with at most `digits` decimals, as the language writes it, to be read. */
 export function formatNumber(value, language = "en", digits = 1) {
-  if (!Number.isFinite(value)) return "–";
+  return Number.isFinite(value) ? editableNumber(value, language, digits).replace("-", "−") : "–";
+}
+
+/** Return a number as text for a field, with a minus that the keyboard has. */
+export function editableNumber(value, language = "en", digits = 3) {
   const rounded = Number(value.toFixed(digits)) || 0; // no minus before a zero
   return rounded.toLocaleString(language, { maximumFractionDigits: digits, useGrouping: false });
 }
