@@ -8,7 +8,7 @@ import { emptyHistory, record, redone, undone } from "./document/history.js";
 export const state = shallowReactive({
   document: emptyDocument(),
   history: emptyHistory(),
-  selection: { joints: [], beams: [] }, // numbers in the document; replaced, never changed in place
+  selection: { joints: [], beams: [] }, // and perhaps goal; numbers in the document; replaced, never changed in place
   hover: null, // { joint } or { beam } or { goal }: what the pointer or focus is on, in any view
   tool: "select", // select, draw, split, fix
   tab: "design", // design, goals, check, print
@@ -49,6 +49,9 @@ export const view = reactive({
   share: 0.5, // part of the width that the plan has beside the shape
   side: true, // whether the side panel is open
   compare: true, // whether the tab "check" draws the shape by finite elements over the answer
+  ground: true, // whether the shape stands over a grid
+  parallel: false, // whether the shape is seen in parallel projection
+  overlay: true, // whether the tab "check" lays the finite elements' shape over the shown one
   tip: true, // whether the line for the first minute is shown
 });
 

@@ -50,12 +50,12 @@ export const library = () => json("/api/library");
 export const materials = () => json("/api/materials");
 export const printers = () => json("/api/printers");
 
-/** Return the results of grids, as `parseFrames` gives them. */
+/** Return the results of grids, as `parseFrames` gives them; each has its `grid`, to be drawn by. */
 export async function simulate(grids, { engine = "learned", signal } = {}) {
   const response = await request("/api/simulate", {
     method: "POST", body: { grids, engine }, accept: MEDIA_TYPE, signal,
   });
-  return parseFrames(await response.arrayBuffer());
+  return parseFrames(await response.arrayBuffer()).map((result, k) => ({ ...result, grid: grids[k] }));
 }
 
 export const rank = (task, signal) => post("/api/rank", task, signal);

@@ -49,7 +49,7 @@ export function createAnnotations(container) {
   const update = (entry, item) => {
     const { element } = entry;
     entry.item = item;
-    element.setAttribute("class", `note ${item.kind} ${item.className ?? ""}${item.onPress ? " operable" : ""}`);
+    element.setAttribute("class", `note note-${item.kind} ${item.className ?? ""}${item.onPress ? " operable" : ""}`);
     if (item.kind === "text") element.firstChild.textContent = item.text;
     if (item.onPress) {
       element.setAttribute("tabindex", item.tabindex ?? 0);

@@ -20,7 +20,10 @@ export const VIEWS = {
 export function createCamera(element, { onChange, still = () => false }) {
   const perspective = new THREE.PerspectiveCamera(ANGLE, 1, 1, 5000);
   const parallel = new THREE.OrthographicCamera(-1, 1, 1, -1, -5000, 5000);
-  for (const camera of [perspective, parallel]) camera.up.set(0, 0, 1);
+  for (const camera of [perspective, parallel]) {
+    camera.up.set(0, 0, 1);
+    camera.position.set(-150, -200, 150); // until something is fitted
+  }
   const controls = new OrbitControls(perspective, element);
   controls.enableDamping = false; // the view stops where the hand stops, and nothing is drawn after it
   controls.zoomToCursor = true;

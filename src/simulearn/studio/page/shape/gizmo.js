@@ -20,7 +20,7 @@ export function gizmoItems(point, size, project, { onPress, name, active = null 
     if (area(points.map(project)) < 30) continue; // px2: seen edge-on
     const id = `plane-${NAMES[normal]}`;
     items.push({
-      id, kind: "polygon", points, className: `handle ${NAMES[normal]} ${active === id ? "active" : ""}`,
+      id, kind: "polygon", points, className: `note-handle ${NAMES[normal]} ${active === id ? "active" : ""}`,
       name: name(NAMES[a] + NAMES[b]), tabindex: -1, onPress: (event) => onPress(event, { id, normal: AXES[normal] }),
     });
   }
@@ -28,7 +28,7 @@ export function gizmoItems(point, size, project, { onPress, name, active = null 
     const end = project(along(axis, 1));
     if (Math.hypot(end.x - origin.x, end.y - origin.y) < FLAT * LENGTH) continue;
     const id = `axis-${NAMES[axis]}`;
-    const className = `handle ${NAMES[axis]} ${active === id ? "active" : ""}`;
+    const className = `note-handle ${NAMES[axis]} ${active === id ? "active" : ""}`;
     const press = { name: name(NAMES[axis]), tabindex: -1, onPress: (event) => onPress(event, { id, axis: AXES[axis] }) };
     items.push(
       { id, kind: "line", a: along(axis, 0.12), b: along(axis, 1), className, ...press },

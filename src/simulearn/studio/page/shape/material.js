@@ -42,8 +42,8 @@ void main() {
   float side = gl_FrontFacing ? 1.0 : -1.0;
   float sky = 0.5 + 0.5 * n.z * side;
   float key = max(0.0, 0.35 + 0.65 * dot(v * side, vec3(-0.40, 0.55, 0.73)));
-  float light = ambient + 0.20 * sky + 0.44 * key;
-  gl_FragColor = vec4(mix(colour * min(light, 1.12), canvas, dim), opacity);
+  float light = ambient + 0.18 * sky + 0.38 * key;
+  gl_FragColor = vec4(mix(colour * min(light, 1.04), canvas, dim), opacity);
 }`;
 
 /** Return the material of a grid's surface; its uniforms are set by `paintWith` and `useMap`. */
@@ -79,7 +79,7 @@ export function paintWith({ uniforms }, theme) {
   });
   uniforms.canvas.value.fromArray(theme.canvas);
   uniforms.accent.value.fromArray(theme.accent);
-  uniforms.ambient.value = theme.dark ? 0.42 : 0.52;
+  uniforms.ambient.value = theme.dark ? 0.40 : 0.48;
 }
 
 /** Colour by values: the map's name (null for the parts' own colours), the range, and whether joints

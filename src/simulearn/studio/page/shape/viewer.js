@@ -47,6 +47,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
   });
   const body = createBody();
   const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong" });
+  ghost.setFrame(0);
   const other = createBody({ opacity: 0.34, edges: 0.7, one: "target" });
   const ground = createGround();
   const print = createPrint();
@@ -144,6 +145,8 @@ export function createViewer(container, { events = {}, still = () => false } = {
 
   const viewer = {
     stage, camera, body, project, rayAt,
+    /** Return mm that one pixel is at a point [x, y, z]. */
+    pixel: (point) => camera.pixel(new THREE.Vector3(...point)),
     /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
     show(result, grid = null) {
       body.show(result, grid);
