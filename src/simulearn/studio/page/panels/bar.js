@@ -6,7 +6,7 @@ import { newDocument } from "../service/saving.js";
 import { edit, endMerge, notify, redo, state, undo, view } from "../store.js";
 import { LANGUAGES, t } from "../text/text.js";
 import { Menu, button, iconButton } from "./controls.js";
-import { useMedia } from "./media.js";
+import { NARROW, useMedia } from "./media.js";
 import { savingState } from "./status.js";
 import { PaneSwitch } from "./views.js";
 
@@ -73,7 +73,7 @@ const settings = () => [
 
 export const Bar = {
   setup() {
-    const narrow = useMedia("(max-width: 899px)");
+    const narrow = useMedia(NARROW);
     return () => h("header", { class: "bar" }, [
       h("div", { class: "bar-part" }, [
         h("a", { class: "brand", href: "/", title: t("common.studio"), "aria-label": t("common.studio") },
