@@ -48,7 +48,6 @@ export const view = reactive({
   pane: "both", // plan, shape, both; narrow windows show one
   share: 0.5, // part of the width that the plan has beside the shape
   side: true, // whether the side panel is open
-  compare: true, // whether the tab "check" draws the shape by finite elements over the answer
   ground: true, // whether the shape stands over a grid
   parallel: false, // whether the shape is seen in parallel projection
   overlay: true, // whether the tab "check" lays the finite elements' shape over the shown one

@@ -87,7 +87,7 @@ function outcome(fea, distance) {
       t("panels.faster", { times: times(fea.seconds / quick) })),
     result.stable === false && note("warning", t("panels.notStable")),
     h("div", { class: "toggles" }, [
-      toggle(t("panels.overlay"), view.compare, (on) => { view.compare = on; }),
+      toggle(t("panels.overlay"), view.overlay, (on) => { view.overlay = on; }),
       toggle(t("panels.colourDeviation"), view.colour === "deviation", (on) => {
         view.colour = on ? "deviation" : "actuator";
       }, !distance),

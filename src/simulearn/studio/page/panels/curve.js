@@ -2,40 +2,17 @@
 
 import { h } from "/libraries/vue.js";
 import { mm, number } from "../service/format.js";
+import { bestSoFar, roundUp } from "../service/steps.js";
 import { t } from "../text/text.js";
 
 const SIZE = { width: 300, height: 120 }; // units of the picture, about pixels
 const EDGE = { left: 34, right: 10, top: 12, bottom: 22 };
-const MOST_POINTS = 300; // of the line; more cannot be told apart
-
-/** Return the largest of 1, 2, 5, 10, ... times a power of ten that is at least `most`. */
-export function roundUp(most) {
-  if (!(most > 0)) return 1;
-  const power = 10 ** Math.floor(Math.log10(most));
-  return [1, 2, 5, 10].map((n) => n * power).find((value) => value >= most * (1 - 1e-9));
-}
-
-/** Return the corners of the line of best errors so far, as steps: [[designs, mm], ...]. */
-export function bestSoFar(steps) {
-  const points = [];
-  let best = Infinity;
-  for (const { designs, error_mm: error } of steps) {
-    if (error < best) {
-      if (best < Infinity) points.push([designs, best]);
-      best = error;
-      points.push([designs, best]);
-    }
-  }
-  if (steps.length) points.push([steps.at(-1).designs, best]);
-  const stride = Math.ceil(points.length / MOST_POINTS);
-  return points.filter((_, k) => k % stride === 0 || k === points.length - 1);
-}
 
 /** Return the curve of a search's steps. at: a number of designs to mark with a point, or null. */
 export function curve(steps, at = null) {
-  const points = bestSoFar(steps);
+  const { points, corrections } = bestSoFar(steps);
   if (points.length === 0) return null;
-  const most = roundUp(points[0][1]);
+  const most = roundUp(Math.max(...points.map(([, error]) => error)));
   const designs = Math.max(1, points.at(-1)[0]);
   const x = (value) => EDGE.left + (value / designs) * (SIZE.width - EDGE.left - EDGE.right);
   const y = (value) => SIZE.height - EDGE.bottom - (value / most) * (SIZE.height - EDGE.top - EDGE.bottom);
@@ -55,6 +32,9 @@ export function curve(steps, at = null) {
     h("text", { class: "curve-number", x: EDGE.left, y: SIZE.height - 5 }, "0"),
     h("text", { class: "curve-number", x: SIZE.width - EDGE.right, y: SIZE.height - 5, "text-anchor": "end" },
       `${number(designs)} ${t("panels.axisDesigns")}`),
+    ...corrections.map((n) => h("line", {
+      class: "curve-correction", x1: x(n), x2: x(n), y1: EDGE.top, y2: SIZE.height - EDGE.bottom,
+    }, [h("title", t("panels.correction"))])),
     h("path", { class: "curve-path", d: path }),
     h("circle", { class: "curve-mark", cx: x(at === null ? marked[0] : at), cy: y(marked[1]), r: 3.5 }),
   ]);

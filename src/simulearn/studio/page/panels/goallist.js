@@ -78,7 +78,7 @@ const Adding = {
       const ready = current() !== null;
       return h("div", { class: "adding" }, [
         button(picking ? t("panels.pickCancel") : t("panels.pick"), pick, {
-          glyph: picking ? "close" : "target", kind: picking ? "" : "primary", disabled: !ready && !picking,
+          glyph: picking ? "close" : "target", kind: picking || state.document.goals.length ? "" : "primary", disabled: !ready && !picking,
         }),
         picking && h("p", { class: "picking", role: "status" }, t("panels.picking")),
         h("form", { class: "adding-list", onSubmit: addChosen }, [

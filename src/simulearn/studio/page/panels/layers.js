@@ -1,11 +1,15 @@
 // The layers of a print: which one is looked at, its travels, and what is printed on it.
 
 import { computed, h } from "/libraries/vue.js";
+import { lengthsOf } from "../service/beads.js";
 import { metres, number } from "../service/format.js";
-import { lengthsOf, showLayer, showTravels } from "../service/printing.js";
+import { showLayer, showTravels } from "../service/printing.js";
 import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { iconButton } from "./controls.js";
+
+/** Return the colours of a role: actuators of the upper half of the section have one of their own. */
+const swatch = (role, layer, all) => (role === "active" && 2 * (layer - 1) >= all ? "active upper" : role);
 
 export const Layers = {
   props: { old: Boolean },
@@ -44,7 +48,7 @@ export const Layers = {
         h("ul", { class: "legend" }, toolpath.roles.map((role) => h("li", {
           key: role, class: { none: lengths.value.get(role) === 0 },
         }, [
-          h("span", { class: ["swatch", role], "aria-hidden": "true" }),
+          h("span", { class: ["swatch", swatch(role, layer, all)], "aria-hidden": "true" }),
           h("span", t(`panels.role_${role}`)),
           h("span", { class: "numbers" }, lengths.value.get(role) === 0 ? "–" : metres(lengths.value.get(role))),
         ]))),

@@ -47,20 +47,20 @@ function form(again) {
   ]);
 }
 
-function running({ state: now, steps, until, seconds: passed, lost }) {
+function running({ state: now, steps, until, passed, lost }) {
   const last = steps.at(-1);
   const words = { queued: "searchQueued", stopping: "searchStopping" }[now] ?? (last ? "searchRunning" : "searchReady");
   return h("div", { class: "search-running" }, [
-    last && h("p", { class: "measure-value numbers" }, mm(Math.min(...steps.map(({ error_mm: error }) => error)))),
+    last && h("p", { class: "measure-value numbers" }, mm(last.error_mm)),
     last && h("p", { class: "measure-name" }, t("panels.best")),
     last && curve(steps),
     h("div", {
-      class: "progress", role: "progressbar", "aria-label": t("panels.search"),
-      "aria-valuemin": 0, "aria-valuemax": until, "aria-valuenow": Math.min(until, Math.round(passed)),
+      class: ["progress", { waiting: !last }], role: "progressbar", "aria-label": t("panels.search"),
+      "aria-valuemin": 0, "aria-valuemax": until, "aria-valuenow": last ? Math.min(until, Math.round(passed)) : undefined,
     }, [h("span", { style: { width: `${Math.min(100, (100 * passed) / until)}%` } })]),
-    h("p", { class: "search-facts numbers" }, [
-      h("span", `${number(last?.designs ?? 0)} ${t("panels.designsTried")}`),
-      h("span", `${seconds(Math.round(passed) || 0)} ${t("panels.ofSeconds", { s: `${number(until)} s` })}`),
+    last && h("p", { class: "search-facts numbers" }, [
+      h("span", `${number(last.designs)} ${t("panels.designsTried")}`),
+      h("span", `${number(passed)} ${t("panels.ofSeconds", { s: `${number(until)} s` })}`),
     ]),
     h("p", { class: "note" }, t(`panels.${words}`)),
     lost && note("warning", t("panels.lost")),

@@ -27,7 +27,7 @@ function card(one, error, fresh) {
   const words = changeWords(one.changes);
   const gain = error - one.error;
   const show = () => {
-    if (!fresh) return;
+    if (!fresh || state.preview?.result === one.result) return;
     showPreview(one.grid, {
       result: one.result, label: words, document: withDesign(state.document, state.document, one.grid),
     });
@@ -37,7 +37,8 @@ function card(one, error, fresh) {
     h("button", {
       type: "button", class: "suggestion", "aria-disabled": fresh ? undefined : "true",
       "aria-label": t("panels.cardName", { words, mm: mm(one.error), gain: gainWords(gain) }),
-      onPointerenter: show, onPointerleave: hide, onFocus: show, onBlur: hide,
+      // Not on entering: a new card that appears under a resting pointer is not looked at yet.
+      onPointermove: show, onPointerleave: hide, onFocus: show, onBlur: hide,
       onClick: () => fresh && take(one),
     }, [
       h("span", { class: "suggestion-picture" }, one.picture

@@ -1,6 +1,8 @@
 // Vertices of goals, and changes of designs, in the words of the page.
 
 import { mm, ratio } from "../service/format.js";
+import { view } from "../store.js";
+import { formatNumber } from "../text/numbers.js";
 import { t } from "../text/text.js";
 
 const ARROWS = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"]; // eighths of a turn from +x
@@ -21,7 +23,7 @@ export function vertexWords([part, number, ...rest]) {
 export function changeWords({ joints, actuators }) {
   const words = [
     ...joints.map(({ k, by: [dx, dy] }) => t("panels.moveJoint", {
-      k, arrow: ARROWS[(Math.round(Math.atan2(dy, dx) / (Math.PI / 4)) + 8) % 8], mm: mm(Math.hypot(dx, dy)),
+      k, arrow: ARROWS[(Math.round(Math.atan2(dy, dx) / (Math.PI / 4)) + 8) % 8], mm: `${formatNumber(Math.hypot(dx, dy), view.language, 1)} mm`,
     })),
     ...actuators.map(({ b, from, to }) => t("panels.changeRatio", { b, from: ratio(from), to: ratio(to) })),
   ];

@@ -22,7 +22,7 @@ export function number(value, digits = 0) {
 /** Return a distance in mm without its unit: engines are not sure of hundredths beyond 1 mm. */
 export function distance(value) {
   const size = Math.abs(value);
-  return number(value, size < 1 ? 2 : size < 100 ? 1 : 0);
+  return number(value, size < 0.995 ? 2 : size < 99.95 ? 1 : 0);
 }
 
 /** Return a distance in mm: "0.42 mm", "12.3 mm", "140 mm". */

@@ -4,11 +4,11 @@
 
 import { state } from "../store.js";
 import { gcode, toolpath } from "./api.js";
+import { fileName } from "./beads.js";
 import { latest } from "./latest.js";
 
 const QUIET = 300; // ms without a change until a toolpath is asked for
 const AGAIN = 3000; // ms until a server that was busy or away is asked again
-const MOST_NAME = 60; // characters of a file's name
 
 const questions = latest(QUIET);
 const retries = latest(AGAIN);
@@ -64,33 +64,6 @@ export function showLayer(layer) {
 
 export function showTravels(travels) {
   state.print = { ...state.print, travels };
-}
-
-/** Return the length of what a layer (1 to n) prints, mm, by role: Map of role -> mm. */
-export function lengthsOf(path, layer) {
-  const lengths = new Map(path.roles.map((role) => [role, 0]));
-  path.layer_of.forEach((at, b) => {
-    if (at !== layer - 1) return;
-    let sum = 0;
-    for (let p = path.starts[b] + 1; p < path.starts[b + 1]; p += 1) {
-      const [[x, y], [u, v]] = [path.points[p - 1], path.points[p]];
-      sum += Math.hypot(u - x, v - y);
-    }
-    const role = path.roles[path.role[b]];
-    lengths.set(role, lengths.get(role) + sum);
-  });
-  return lengths;
-}
-
-/** Return how many beads lie on a layer (1 to n). */
-export function beadsOf(path, layer) {
-  return path.layer_of.filter((at) => at === layer - 1).length;
-}
-
-/** Return a file name made of a design's name: letters, digits, dashes. */
-export function fileName(name) {
-  const plain = name.normalize("NFKD").replace(/\p{Mark}/gu, "").replace(/[^A-Za-z0-9]+/g, "-");
-  return plain.replace(/^-+|-+$/g, "").slice(0, MOST_NAME).toLowerCase() || "grid";
 }
 
 /** Have the browser save the G-code of the current design. */

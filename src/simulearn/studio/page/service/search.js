@@ -2,6 +2,7 @@
 // taken or discarded. state.search has
 //   document: that it is for, until: seconds that it may take,
 //   state: "queued", "running", "stopping", "done", "failed", lost: whether the server is silent,
+//   passed: seconds since it began, 0 while it gets ready,
 //   steps: {iteration, phase, seconds, designs, error_mm, grid} so far,
 //   best: {grid, error_mm, error_fea_mm, ...} once it is done, problem: why it failed.
 
@@ -11,9 +12,9 @@ import { Problem, jobFrames, simulate, startOptimize } from "./api.js";
 import { placedLike, withDesign } from "./designs.js";
 import { runJob } from "./jobs.js";
 import { latest } from "./latest.js";
+import { stagesOf } from "./steps.js";
 import { endPreview, showPreview } from "./preview.js";
 
-const SHOWN = 60; // steps at most that are stepped through; of more, every second or third is left out
 const SHAPES = latest(0);
 
 let job = null;
@@ -25,15 +26,17 @@ export async function startSearch({ joints, actuators, seconds }) {
   const free = { ...(joints ? {} : { joints: [] }), ...(actuators ? {} : { actuators: [] }) };
   const task = taskOf(document, { free, limits: { seconds } });
   const key = {}; // of this search: answers to an earlier one are left unread
-  state.search = { key, document, until: seconds, state: "queued", lost: false, steps: [], seconds: 0 };
+  state.search = { key, document, until: seconds, state: "queued", lost: false, steps: [], passed: 0 };
   const update = (more) => {
     if (state.search?.key === key) state.search = { ...state.search, ...more };
   };
-  job = runJob(() => startOptimize(task), (answer) => {
-    const now = state.search?.state === "stopping" ? "stopping" : answer.state;
+  let ready = null; // s after which the search itself began: kernels are compiled before
+  job = runJob(() => startOptimize(task), ({ state: now, steps, seconds: passed, lost }) => {
+    if (steps.length) ready ??= passed - steps.at(-1).seconds;
+    const stopping = state.search?.state === "stopping";
     update({
-      state: ["queued", "stopping"].includes(now) ? now : "running",
-      steps: answer.steps, seconds: answer.seconds, lost: answer.lost,
+      state: stopping ? "stopping" : now === "queued" ? now : "running",
+      steps, lost, passed: ready === null ? 0 : passed - ready,
     });
   });
   try {
@@ -41,7 +44,7 @@ export async function startSearch({ joints, actuators, seconds }) {
     if (!answer.result) return update({ state: "cancelled" });
     const best = { ...answer.result, grid: placedLike(document.grid, answer.result.grid) };
     const [shape] = await shapes(answer.id);
-    update({ state: "done", best, shape, stages: stagesOf(document, answer.steps, best, shape) });
+    update({ state: "done", best, shape, stages: stagesOf(document.grid, answer.steps, best, shape) });
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
     update({ state: "failed", problem });
@@ -75,23 +78,6 @@ export function discardSearch() {
 /** Return whether a search is going on. */
 export function searching() {
   return ["queued", "running", "stopping"].includes(state.search?.state);
-}
-
-/** Return the designs on the way of a search, each different from the one before; the best is last. */
-function stagesOf(document, steps, best, shape) {
-  const changed = steps.filter((step, n) => n === 0 || differs(step.grid, steps[n - 1].grid));
-  const stride = Math.ceil(changed.length / SHOWN);
-  const stages = changed.filter((step, n) => n % stride === 0).map((step) => ({
-    grid: placedLike(document.grid, step.grid), error: step.error_mm, designs: step.designs, result: null,
-  }));
-  const last = { grid: best.grid, error: best.error_mm, designs: best.designs, result: shape };
-  if (stages.length && !differs(stages.at(-1).grid, best.grid)) stages.pop();
-  return [...stages, last];
-}
-
-function differs(a, b) {
-  return a.joints.some(([x, y], k) => x !== b.joints[k][0] || y !== b.joints[k][1])
-    || a.actuators.some((ratio, k) => ratio !== b.actuators[k]);
 }
 
 /** Show a stage of the search in the scene. */
