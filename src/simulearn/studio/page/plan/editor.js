@@ -16,6 +16,8 @@ export const editor = shallowReactive({
   size: { width: 600, height: 600 },
   pointer: null, // { screen, point, touch } while the pointer is over the plan
   dragging: false, // whether parts are being moved
+  pressed: false, // whether a button or finger is down
+  keys: false, // whether the last input was a key: then the focus is shown
   panning: false, // whether the plan is being moved
   focus: null, // { joint } or { beam }: what keys reach by Tab
   snapped: null, // what `snap` found: { point, kind, guides, text }

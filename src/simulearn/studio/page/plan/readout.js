@@ -13,7 +13,7 @@ import { angle, distance } from "../document/measure.js";
 
 const OFFSET = [16, 18]; // px from the pointer
 const OFFSET_TOUCH = [-60, -84]; // px; above a finger
-const WIDE = 220; // px; a readout nearer to the right edge goes to the left
+const WIDE = 310; // px; a readout nearer to the right edge goes to the left
 const HIGH = 120; // px
 
 const SNAPS = {
@@ -31,7 +31,7 @@ export const Readout = {
     const part = state.hover;
     if (!pointer || !part || part.goal !== undefined || !exists(part)) return null;
     if (editor.popover && part.beam !== undefined && part.beam === editor.popover.beam) return null;
-    return box(pointer.point, partRows(part), pointer);
+    return box(pointer.point, partRows(part), pointer, "facts");
   },
 };
 
@@ -40,13 +40,13 @@ function exists({ joint, beam }) {
   return joint !== undefined ? joint in grid.joints : beam in grid.beams;
 }
 
-function box(point, rows, pointer) {
+function box(point, rows, pointer, name = "") {
   const [x, y] = pointer ? pointer.screen : toScreen(editor.camera, point);
   const [dx, dy] = pointer?.touch ? OFFSET_TOUCH : OFFSET;
   const left = x + dx + WIDE > editor.size.width ? x - dx : x + dx;
   const above = y + dy + HIGH > editor.size.height;
   const style = { transform: `translate(${left}px, ${above ? y - dy : y + dy}px)` };
-  const classes = ["plan-readout", { flipped: left < x && !pointer?.touch, above }];
+  const classes = ["plan-readout", name, { flipped: left < x && !pointer?.touch, above }];
   return h("div", { class: classes, style, "aria-hidden": "true" }, h("div", rows));
 }
 
@@ -93,6 +93,6 @@ function partRows(part) {
   return [
     h("div", { class: "title" }, title),
     h("div", { class: "row" }, factsOf(part).map(({ name, value }) => h("span", [h("small", `${name} `), value]))),
-    ...(mark ? mark.messages.map((text) => h("div", { class: ["message", mark.kind] }, text)) : []),
+    ...(mark ? mark.messages.map((text) => h("div", { class: ["fault", mark.kind] }, text)) : []),
   ];
 }
