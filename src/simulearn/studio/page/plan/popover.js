@@ -7,7 +7,7 @@ import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { flipBeams, ratioText, setBeams, stepBeams } from "./actions.js";
 import { anyVisible, toScreen } from "./camera.js";
-import { editor } from "./editor.js";
+import { editor, isLow } from "./editor.js";
 import { placeOf } from "./focus.js";
 import { icon } from "./icons.js";
 import { commonRatio } from "./lengths.js";
@@ -25,7 +25,7 @@ export const Popover = {
     const ends = grid.beams[beam].map((k) => toScreen(editor.camera, grid.joints[k]));
     if (!anyVisible(editor.camera, editor.size, [placeOf(grid, { beam })])) return null;
     const middle = toScreen(editor.camera, bounds(grid).middle);
-    const [x, y] = beside(ends, middle, SIZE, editor.size);
+    const [x, y] = beside(ends, middle, SIZE, editor.size, isLow() ? 8 : 64);
     const ratio = commonRatio(grid, beams);
     const title = beams.length === 1 ? t("plan.beam", { beam }) : t("plan.beams", { count: beams.length });
     return h("div", {

@@ -15,6 +15,7 @@ const OFFSET = [16, 18]; // px from the pointer
 const OFFSET_TOUCH = [-60, -84]; // px; above a finger
 const WIDE = 310; // px; a readout nearer to the right edge goes to the left
 const HIGH = 120; // px
+const EDGE = 4; // px between a readout and the view's border
 
 const SNAPS = {
   joint: "snapJoint", beam: "snapBeam", crossing: "snapCrossing", align: "snapAlign",
@@ -24,7 +25,8 @@ export const Readout = {
   render() {
     const { pointer, line, cut, dragging, panning, menu } = editor;
     if (panning || menu) return null;
-    if (line && line.points.length > 1) return box(line.next, drawing(line), pointer);
+    if (line && line.points.length > 1 && (pointer || editor.entry?.length || editor.entry?.angle))
+      return box(line.next, drawing(line), pointer);
     if (line) return pointer ? box(pointer.point, [place(line.next)], pointer) : null;
     if (cut) return pointer && box(pointer.point, [lengths(cut)], pointer);
     if (dragging) return pointer && editor.snapped && box(pointer.point, moving(), pointer);
@@ -45,7 +47,8 @@ function box(point, rows, pointer, name = "") {
   const [dx, dy] = pointer?.touch ? OFFSET_TOUCH : OFFSET;
   const left = x + dx + WIDE > editor.size.width ? x - dx : x + dx;
   const above = y + dy + HIGH > editor.size.height;
-  const style = { transform: `translate(${left}px, ${above ? y - dy : y + dy}px)` };
+  const top = above ? y - dy : Math.max(EDGE, y + dy);
+  const style = { transform: `translate(${left}px, ${top}px)` };
   const classes = ["plan-readout", name, { flipped: left < x && !pointer?.touch, above }];
   return h("div", { class: classes, style, "aria-hidden": "true" }, h("div", rows));
 }
