@@ -22,6 +22,7 @@ from simulearn.cli import (  # noqa: F401  (they add their commands)
     inverse,
     learn,
     simulate,
+    studio,
 )
 from simulearn.cli.base import app, err
 from simulearn.errors import CancelledError, ComputationError, InputError
@@ -31,6 +32,7 @@ HINTS = {  # what helps on the command line, by the code of an error
     "no-answer": "--engine fea may have one",
     "material-not-learnt": "--engine fea simulates any material, and `simulearn train` learns one",
     "engine-not-differentiable": "--method default takes any engine",
+    "port-taken": "without --port a free one is found",
 }
 
 

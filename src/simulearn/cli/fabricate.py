@@ -2,9 +2,8 @@
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
@@ -60,7 +59,7 @@ def gcode_(
     for path in files:
         WRITERS[path.suffix.lower()](job, path, layer)
     if as_json:
-        print(json.dumps({"files": [str(path) for path in files]} | _facts(job), allow_nan=False))
+        print(json.dumps({"files": [str(path) for path in files]} | job.facts, allow_nan=False))
         return
     out.print(_table(job))
     print_files(files)
@@ -125,7 +124,7 @@ def _picture(job: "Job", path: Path, layer: int | None) -> None:
 def _data(job: "Job", path: Path, layer: int | None) -> None:
     from simulearn.fabricate import toolpath_to_dict
 
-    data = toolpath_to_dict(job.path) | {"print": _facts(job)}
+    data = toolpath_to_dict(job.path) | {"print": job.facts}
     with replacing(path) as temporary:
         temporary.write_text(json.dumps(data, allow_nan=False) + "\n", encoding="utf-8")
 
@@ -148,23 +147,6 @@ def _check(files: list[Path], grids: list[Path]) -> None:
         if path.suffix.lower() not in WRITERS:
             raise InputError(f"{path}: the ending is not one of {' '.join(WRITERS)}")
         outputs.check_place(path, grids)
-
-
-def _facts(job: "Job") -> dict[str, Any]:
-    """Return what machines want to know about a print."""
-    low, high = job.path.bounds.tolist()
-    return {
-        "printer": job.printer.name,
-        "material": job.material.name,
-        "grids": [
-            {"name": name, "joints": grid.joints.tolist()}
-            for name, grid in zip(job.names, job.grids, strict=True)
-        ],
-        "layers": len(job.path.layers),
-        "bounds_mm": [low, high],
-        **asdict(job.estimate),
-        "warnings": [asdict(warning) for warning in job.warnings],
-    }
 
 
 def _words(job: "Job") -> str:

@@ -26,7 +26,6 @@ from simulearn.cli.search_report import (
     live,
     ranking_figures,
     ranking_table,
-    search_figures,
     search_pictures,
     search_words,
 )
@@ -73,7 +72,7 @@ def optimize(
     as_json: Json = False,
 ) -> None:
     """Search for a grid that comes where it is wanted; the same command goes on later."""
-    from simulearn.inverse import Past, read_task
+    from simulearn.inverse import Past, read_task, search_figures
     from simulearn.inverse import optimize as search
     from simulearn.inverse.keeping import identity, read_past, write_past
 

@@ -1,8 +1,9 @@
 """A print from beginning to end: grids and a printer in; toolpath, estimate and G-code out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +58,23 @@ class Job:
     def estimate(self) -> Estimate:
         """Time and filament."""
         return estimate(self.moves, self.settings, self.printer, self.durations)
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What machines want to know about the print, as plain data."""
+        low, high = self.path.bounds.tolist()
+        return {
+            "printer": self.printer.name,
+            "material": self.material.name,
+            "grids": [
+                {"name": name, "joints": grid.joints.tolist()}
+                for name, grid in zip(self.names, self.grids, strict=True)
+            ],
+            "layers": len(self.path.layers),
+            "bounds_mm": [low, high],
+            **asdict(self.estimate),
+            "warnings": [asdict(warning) for warning in self.warnings],
+        }
 
     @cached_property
     def gcode(self) -> str:

@@ -10,7 +10,7 @@ from simulearn.grid.lattice import drop_beams, lattice
 from simulearn.grid.library import library, make
 from simulearn.grid.outline import CornerTopology, Outline, corner_topology, outline
 from simulearn.grid.sketch import sketch
-from simulearn.grid.validation import Validation, errors_of, net_lengths, validate
+from simulearn.grid.validation import Validation, errors_of, validate
 
 __all__ = [
     "Checks",
@@ -34,7 +34,6 @@ __all__ = [
     "lattice",
     "library",
     "make",
-    "net_lengths",
     "outline",
     "read_grid",
     "sketch",

@@ -113,22 +113,6 @@ def validate(
     return Validation(tuple(errors), tuple(warnings), net)
 
 
-def net_lengths(grid: Grid, width: float) -> dict[int, float]:
-    """Return the lengths that `validate` gives, without checking the design.
-
-    Args:
-        grid: the design.
-        width: mm, of a beam.
-    """
-    if structure_errors(grid):
-        return {}
-    at, joints = connections(grid), grid.joints[None]
-    shape = outlines(grid.beams, joints, width, at.beams)
-    faced = at.beams & shape.sound[0, grid.beams].all(axis=1)
-    measured = lengths(grid.beams, joints, shape).net[0]
-    return {b: float(measured[b]) for b in np.flatnonzero(faced).tolist()}
-
-
 def errors_of(grids: Sequence[Grid], materials: Sequence[Material]) -> list[tuple[Message, ...]]:
     """Return the errors of each of many grids, as `validate` gives them; none where it is valid.
 

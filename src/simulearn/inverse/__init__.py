@@ -2,6 +2,7 @@
 
 from simulearn.inverse.changes import Change, changes
 from simulearn.inverse.checking import Check, check
+from simulearn.inverse.figures import search_figures
 from simulearn.inverse.goals import Goals, Vertex
 from simulearn.inverse.keeping import Past, Step
 from simulearn.inverse.ranking import Ranking, Suggestion, rank
@@ -33,6 +34,7 @@ __all__ = [
     "optimize",
     "rank",
     "read_task",
+    "search_figures",
     "task_from_dict",
     "task_to_dict",
     "write_task",

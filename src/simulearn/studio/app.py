@@ -1,5 +1,6 @@
 """The studio's server: the page's files and the REST API on one address."""
 
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import cache
@@ -11,17 +12,24 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from simulearn.studio import frames
 from simulearn.studio.bodies import json_response
+from simulearn.studio.documents import Documents
+from simulearn.studio.jobs import Jobs
 from simulearn.studio.openapi import describe
 from simulearn.studio.page import serve_page
 from simulearn.studio.problems import LastResort, answer_errors
-from simulearn.studio.routes import about, designs
+from simulearn.studio.routes import about, designs, documents, files, jobs, prints
 from simulearn.studio.safety import BodyLimit, OwnOriginOnly, SecurityHeaders
 from simulearn.studio.settings import Settings
 from simulearn.studio.simulations import Simulations
+from simulearn.studio.turns import Turns
 
 ROUTERS = (
     about.router,
     designs.router,
+    jobs.router,
+    prints.router,
+    files.router,
+    documents.router,
 )
 ROOM = 2**14  # bytes of text that are worth compressing
 EFFORT = 4  # of compressing; more takes longer than it saves
@@ -41,6 +49,10 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app = FastAPI(title="SimuLearn studio", openapi_url=None, lifespan=_lifespan)
     app.state.settings = settings
     app.state.simulations = Simulations(settings)
+    app.state.jobs = Jobs(settings)
+    app.state.documents = Documents(settings)
+    app.state.turns = Turns("file", 2, settings.waiting)
+    app.state.exports = Turns("export", 1, settings.waiting, settings.export_seconds)
     for router in ROUTERS:
         app.include_router(router)
     serve_page(app)
@@ -60,7 +72,16 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     simulations: Simulations = app.state.simulations
     simulations.start_warming()
     yield
-    simulations.close()
+    stop(app)
+
+
+def stop(app: FastAPI) -> list[threading.Thread]:
+    """Stop all that an application computes; return threads that may take a while to end."""
+    state = app.state
+    threads = state.jobs.close()
+    for service in (state.simulations, state.turns, state.exports):
+        threads += service.close()
+    return threads
 
 
 def _serve_description(app: FastAPI) -> None:

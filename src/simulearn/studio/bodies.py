@@ -16,11 +16,14 @@ from pydantic import BaseModel, ConfigDict, Field, SkipValidation
 
 from simulearn.errors import InputError
 from simulearn.files import parse_json
+from simulearn.grid import grid_to_dict, make
 from simulearn.grid.gridfile import GridFile
 from simulearn.inverse import Task
+from simulearn.learn.common.bundle import shipped
 from simulearn.studio.problems import Problem
+from simulearn.studio.simulations import AT_ONCE
 
-AT_ONCE = 2**16  # bytes of JSON that take a millisecond or less; more are read beside the loop
+SHORT = 2**16  # bytes of JSON that take a millisecond or less; more are read beside the loop
 
 GridBody = Annotated[GridFile, SkipValidation]
 
@@ -34,16 +37,23 @@ class _TaskFile(Task):
 TaskBody = Annotated[_TaskFile, SkipValidation]
 
 
-class SimulateBody(BaseModel):
-    """Designs to simulate, and by which engine."""
+def _one_of(*names: str) -> Any:
+    """Return a field that is described as one of some names; who reads it says it better."""
+    return Field(json_schema_extra={"enum": list(names)})
 
-    model_config = ConfigDict(strict=True, extra="forbid")
+
+class SimulateBody(BaseModel):
+    """Designs to simulate, by which engine, and by which model where that is `learned`."""
+
+    model_config = ConfigDict(
+        strict=True,
+        extra="forbid",
+        json_schema_extra={"examples": [{"grids": [grid_to_dict(make("saddle", (1, 1)))]}]},
+    )
 
     grids: Annotated[list[GridBody], Field(min_length=1)]
-    engine: Annotated[str, Field(description="learned, beams or fea")] = "learned"
-    model: Annotated[
-        str | None, Field(description="name of a model that comes with SimuLearn, for learned")
-    ] = None
+    engine: Annotated[str, _one_of(*AT_ONCE)] = "learned"
+    model: Annotated[str, _one_of("default", *shipped())] | None = None
 
 
 class JsonRoute(APIRoute):
@@ -74,7 +84,7 @@ class _StrictRequest(Request):
     async def json(self) -> Any:
         """Return what the body holds."""
         body = await self.body()
-        if len(body) <= AT_ONCE:
+        if len(body) <= SHORT:
             return _parsed(body)
         return await to_thread.run_sync(_parsed, body)
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
-from simulearn.grid import Grid, net_lengths
+from simulearn.grid import Grid, validate
 from simulearn.grid.cleaning import kept
 from simulearn.material import load_material
 from simulearn.simulate import Failure, Outcome, Result, remarks, summary
@@ -23,6 +23,7 @@ from simulearn.simulate.resultfile import failure_to_dict
 
 MAGIC = b"SLF1"
 SCHEMA = "simulearn.frames/1"
+DIGITS = 3  # of lengths, mm
 MEDIA_TYPE = "application/vnd.simulearn.frames"
 IN_RESPONSES: dict[int | str, dict[str, Any]] = {  # for the description of a route
     200: {"content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}}}
@@ -68,14 +69,15 @@ def mises(stress: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _result(grid: Grid, result: Result) -> dict[str, Any]:
     joints, beams = kept(grid.beams, len(grid.joints))
+    numbers = np.flatnonzero(beams).tolist()
     return {
         "ok": True,
         "engine": result.engine,
         **summary(result),
         "remarks": remarks(result),
         "joint_numbers": np.flatnonzero(joints).tolist(),
-        "beam_numbers": np.flatnonzero(beams).tolist(),
-        "net_lengths": _net_lengths(grid),
+        "beam_numbers": numbers,
+        "net_lengths": dict(zip(numbers, _lengths(result), strict=True)),
     }
 
 
@@ -88,10 +90,18 @@ def _failure(grid: Grid, failure: Failure) -> dict[str, Any]:
     }
 
 
+def _lengths(result: Result) -> list[float]:
+    """Return the length of each beam between its joints, mm: from section to section, flat."""
+    centres = result.beams[0].mean(axis=2)
+    along = centres[:, 2] - centres[:, 0]
+    lengths: list[float] = np.linalg.norm(along, axis=1).round(DIGITS).tolist()
+    return lengths
+
+
 def _net_lengths(grid: Grid) -> dict[int, float]:
-    """Return the length between its joints, mm, of each beam that has an outline."""
+    """Return the same of a design without a result, for the beams that have an outline."""
     try:
-        section = load_material(grid.material).section
+        report = validate(grid, load_material(grid.material))
     except InputError:
         return {}
-    return {b: round(length, 3) for b, length in net_lengths(grid, section.width).items()}
+    return {b: round(length, DIGITS) for b, length in report.net_lengths.items()}

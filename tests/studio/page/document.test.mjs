@@ -2,8 +2,12 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { emptyDocument, hasVertex, readDocument, sameGrid, withGrid } from "../../../src/simulearn/studio/page/document/document.js";
-import { emptyHistory, record, redoLabel, redone, undoLabel, undone } from "../../../src/simulearn/studio/page/document/history.js";
+import {
+  emptyDocument, hasVertex, readDocument, sameGrid, withGrid,
+} from "../../../src/simulearn/studio/page/document/document.js";
+import {
+  emptyHistory, record, redoLabel, redone, undoLabel, undone,
+} from "../../../src/simulearn/studio/page/document/history.js";
 import { taskOf } from "../../../src/simulearn/studio/page/document/task.js";
 import { assertWellFormed, documentOf, square } from "./support.mjs";
 
@@ -11,7 +15,8 @@ const copy = (value) => JSON.parse(JSON.stringify(value));
 
 test("documents are read as they were written", () => {
   assertWellFormed(emptyDocument());
-  assertWellFormed({ ...square({ goals: [{ vertex: ["beam", 2, "middle", 3], weight: 0 }] }), name: "Größe 🦀" });
+  const goals = [{ vertex: ["beam", 2, "middle", 3], weight: 0 }];
+  assertWellFormed({ ...square({ goals }), name: "Größe 🦀" });
 });
 
 test("what may be left out has its usual value, and numbered sections get their names", () => {
@@ -27,7 +32,7 @@ const deep = JSON.parse("[".repeat(50_000) + "]".repeat(50_000));
 const WRONG = [
   [() => null, /^the document is null; it is an object with schema, name/],
   [() => [], /the document is \[\]/],
-  [(one) => ({ ...one, schema: "simulearn.document/2" }), /schema is "simulearn.document\/2"; this page reads/],
+  [(one) => ({ ...one, schema: "simulearn/2" }), /schema is "simulearn\/2"; this page reads/],
   [(one) => ({ ...one, colour: 1 }), /the document has the key "colour"; its keys are/],
   [(one) => JSON.parse(`{"__proto__": 1, ${JSON.stringify(one).slice(1)}`), /has the key "__proto__"/],
   [(one) => ({ ...one, name: 5 }), /name is 5/],
@@ -40,7 +45,7 @@ const WRONG = [
   [(one, g) => void (g.joints[1] = [0, 0, 0]), /joints\[1\]/],
   [(one, g) => void (g.joints[1] = [0, 1e6]), /joints\[1\] lies beyond 100000 mm/],
   [(one, g) => void (g.joints = Array(20_001).fill([0, 0])), /joints has 20001 entries; at most 20000/],
-  [(one, g) => void (g.beams[2] = [0, 4]), /beams\[2\] is \[0,4\]; a beam is \[i, j\], two of the joints 0 to 3/],
+  [(one, g) => void (g.beams[2] = [0, 4]), /beams\[2\] is \[0,4\]; .* two of the joints 0 to 3/],
   [(one, g) => void (g.beams[2] = [0, 1.5]), /beams\[2\]/],
   [(one, g) => void (g.beams[2] = [3, 3]), /beams\[2\] is \[3,3\]; a beam joins two different joints/],
   [(one, g) => void (g.beams[2] = [1, 0]), /beams\[2\] is \[1,0\]; another beam joins the same two joints/],
@@ -49,9 +54,9 @@ const WRONG = [
   [(one, g) => void (g.actuators[1] = null), /actuators\[1\] is null/],
   [(one, g) => void (g.fixed = 4), /fixed is 4; it is the number of a joint/],
   [(one, g) => void (g.material = 7), /material is 7/],
-  [(one) => void (one.goals[0].vertex = ["joint", 4, "centre"]), /goals\[0\].vertex is \["joint",4,"centre"\]; the grid has no such/],
+  [(one) => void (one.goals[0].vertex = ["joint", 4, 0]), /goals\[0\].vertex is \["joint",4,0\]; /],
   [(one) => void (one.goals[0].vertex = "joint"), /goals\[0\].vertex is "joint"/],
-  [(one) => void (one.goals[0].target = [1, 2]), /goals\[0\].target is \[1,2\]; a target is \[x, y, z\] in mm/],
+  [(one) => void (one.goals[0].target = [1, 2]), /goals\[0\].target is \[1,2\]; a target is/],
   [(one) => void (one.goals[0].weight = -1), /goals\[0\].weight is -1/],
 ];
 
@@ -60,26 +65,34 @@ test("what is no document is refused in a sentence that names the place", () => 
     const one = copy(square({ goals: [{ vertex: ["joint", 1, "centre"] }] }));
     const given = change(one, one.grid);
     const data = given === undefined ? one : given;
-    assert.throws(() => readDocument(data), (error) => words.test(error.message) && error.message.length < 300, String(words));
+    const fits = ({ message }) => words.test(message) && message.length < 300;
+    assert.throws(() => readDocument(data), fits, String(words));
   }
 });
 
 test("grids are equal when all their numbers are", () => {
   const { grid } = square();
   assert.ok(sameGrid(grid, copy(grid)));
-  const changes = [{ fixed: 1 }, { material: "b" }, { actuators: [0, 0, 0, 1] }, { joints: grid.joints.slice(1) },
-    { beams: [[1, 0], ...grid.beams.slice(1)] }];
+  const changes = [
+    { fixed: 1 }, { material: "b" }, { actuators: [0, 0, 0, 1] }, { joints: grid.joints.slice(1) },
+    { beams: [[1, 0], ...grid.beams.slice(1)] },
+  ];
   for (const change of changes) assert.ok(!sameGrid(grid, { ...grid, ...change }), JSON.stringify(change));
 });
 
 test("another grid drops goals whose vertex it does not have", () => {
-  const goals = [{ vertex: ["joint", 3, 7] }, { vertex: ["joint", 1, "centre"] }, { vertex: ["beam", 3, "end", 0] }];
+  const vertices = [["joint", 3, 7], ["joint", 1, "centre"], ["beam", 3, "end", 0]];
+  const goals = vertices.map((vertex) => ({ vertex }));
   const document = square({ goals });
   const { grid } = documentOf([[0, 0], [1, 1]], [[0, 1]]);
   assert.deepEqual(withGrid(document, grid).goals, [document.goals[1]]);
   assert.equal(withGrid(document, document.grid), document);
   assert.equal(withGrid(document, copy(document.grid)).goals, document.goals);
-  for (const vertex of [null, [], ["joint"], ["joint", 0, 8], ["joint", 0, "centre", 1], ["beam", 0, "side", 0], ["beam", 0, "end", 4]])
+  const none = [
+    null, [], ["joint"], ["joint", 0, 8], ["joint", 0, "centre", 1], ["beam", 0, "side", 0],
+    ["beam", 0, "end", 4],
+  ];
+  for (const vertex of none)
     assert.ok(!hasVertex(grid, vertex), JSON.stringify(vertex));
 });
 

@@ -2,7 +2,9 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { addJointOnBeam, addPolyline, settle, splitBeam } from "../../../src/simulearn/studio/page/document/drawing.js";
+import {
+  addJointOnBeam, addPolyline, settle, splitBeam,
+} from "../../../src/simulearn/studio/page/document/drawing.js";
 import { moveJoints, placeJoint } from "../../../src/simulearn/studio/page/document/edit.js";
 import { emptyDocument } from "../../../src/simulearn/studio/page/document/document.js";
 import { assertWellFormed, documentOf, edges, frozen, square } from "./support.mjs";
@@ -24,7 +26,9 @@ test("a closed polyline closes, and one that crosses itself gets a joint there",
 
 test("what is no line changes nothing", () => {
   const document = square();
-  const nowhere = [[], [[5, 5]], [[5, 5], [5, 5]], [[5, 5], [5.4, 5.4]], [[NaN, 0], [Infinity, 1]], [[1e6, 0], [0, 1e6]]];
+  const nowhere = [
+    [], [[5, 5]], [[5, 5], [5, 5]], [[5, 5], [5.4, 5.4]], [[NaN, 0], [Infinity, 1]], [[1e6, 0], [0, 1e6]],
+  ];
   for (const points of nowhere) assert.equal(addPolyline(document, points), document);
 });
 
@@ -90,7 +94,8 @@ test("lines drawn back and forth give their beams once", () => {
 });
 
 test("a fine polyline within the tolerance of itself stays well-formed", () => {
-  const spiral = Array.from({ length: 200 }, (_, k) => [Math.cos(k / 9) * k * 0.02, Math.sin(k / 9) * k * 0.02]);
+  const turns = Array.from({ length: 200 }, (_, k) => k / 9);
+  const spiral = turns.map((angle) => [0.18 * angle * Math.cos(angle), 0.18 * angle * Math.sin(angle)]);
   assertWellFormed(addPolyline(emptyDocument(), spiral));
 });
 
@@ -128,7 +133,8 @@ test("goals on a part that a beam in the other sense replaces change ends and si
   const document = documentOf([[0, 0], [60, 0], [30, 0]], [[0, 1], [1, 2]], { goals });
   const next = settle(document, [2]);
   assert.deepEqual(next.grid.beams, [[0, 2], [1, 2]]);
-  assert.deepEqual(next.goals.map(({ vertex }) => vertex), [["beam", 1, "start", 1], ["beam", 1, "start", 0]]);
+  const vertices = next.goals.map(({ vertex }) => vertex);
+  assert.deepEqual(vertices, [["beam", 1, "start", 1], ["beam", 1, "start", 0]]);
 });
 
 test("a joint that is dropped on another becomes that one", () => {
@@ -153,7 +159,8 @@ test("a joint that is dropped on a beam splits it, a beam that is dragged over a
 });
 
 test("beams that cross after a drag get a joint", () => {
-  const document = documentOf([[0, 0], [60, 0], [30, 10], [30, 50]], [[0, 1], [2, 3]], { actuators: [1, -1] });
+  const joints = [[0, 0], [60, 0], [30, 10], [30, 50]];
+  const document = documentOf(joints, [[0, 1], [2, 3]], { actuators: [1, -1] });
   assert.equal(settle(document, [2]), document);
   const next = settle(moveJoints(document, [2], [0, -30]), [2]);
   assert.deepEqual(counts(next), [5, 4]);
@@ -161,7 +168,8 @@ test("beams that cross after a drag get a joint", () => {
 });
 
 test("nothing that has not moved is joined", () => {
-  const crossing = documentOf([[0, 0], [60, 0], [30, -30], [30, 30], [200, 0], [260, 0]], [[0, 1], [2, 3], [4, 5]]);
+  const joints = [[0, 0], [60, 0], [30, -30], [30, 30], [200, 0], [260, 0]];
+  const crossing = documentOf(joints, [[0, 1], [2, 3], [4, 5]]);
   assert.equal(settle(crossing, [4]), crossing);
   assert.equal(settle(crossing, []), crossing);
   assert.equal(settle(crossing, [99]), crossing);

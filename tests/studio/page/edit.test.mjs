@@ -105,7 +105,9 @@ test("a joint that bears something is fixed rather than a nearer one that dangle
 
 test("merging joints joins their beams, drops second ones and keeps the first's place", () => {
   const document = square({ fixed: 3, actuators: [0.1, 0.2, 0.3, 0.4], goals: [
-    { vertex: ["joint", 3, "centre"] }, { vertex: ["joint", 1, "centre"] }, { vertex: ["beam", 3, "start", 0] },
+    { vertex: ["joint", 3, "centre"] },
+    { vertex: ["joint", 1, "centre"] },
+    { vertex: ["beam", 3, "start", 0] },
   ] });
   const next = edit.mergeJoints(document, 1, 3);
   assert.deepEqual(next.grid.joints, [[0, 0], [60, 0], [60, 60]]);
@@ -139,7 +141,10 @@ test("fixing another joint keeps the places of targets in the plan", () => {
 test("a mirror image keeps ratios; twice is the beginning", () => {
   const document = documentOf([[0, 0], [60, 0], [70, 40], [0, 30]], [[0, 1], [1, 2], [2, 3], [3, 0]], {
     actuators: [0.5, -0.5, 1, 0],
-    goals: [{ vertex: ["joint", 1, 2], target: [10, 20, 30] }, { vertex: ["beam", 1, "end", 3], target: [1, 2, 3] }],
+    goals: [
+      { vertex: ["joint", 1, 2], target: [10, 20, 30] },
+      { vertex: ["beam", 1, "end", 3], target: [1, 2, 3] },
+    ],
   });
   for (const axis of ["x", "y"]) {
     const next = edit.mirror(document, null, axis);

@@ -7,12 +7,15 @@ import { frozen, near, square } from "./support.mjs";
 
 const CENTRE = ["joint", 1, "centre"];
 
-/** A result of 2 joints and 1 beam whose number at frame f, part p, corner c, axis a is 1000 f + 100 p + c + a / 10. */
+/** A result of two joints and a beam: 1000 frame + 100 part + corner + axis / 10. */
 function result(numbers = {}) {
-  const value = (f, p, c, a) => 1000 * f + 100 * p + c + a / 10;
-  const array = (parts, corners) =>
-    Float32Array.from({ length: 12 * parts * corners * 3 }, (_, k) =>
-      value(Math.floor(k / (parts * corners * 3)), Math.floor(k / (corners * 3)) % parts, Math.floor(k / 3) % corners, k % 3));
+  const array = (parts, corners) => {
+    const size = 3 * corners; // numbers of a part
+    return Float32Array.from({ length: 12 * parts * size }, (_, k) => {
+      const [frame, part] = [Math.floor(k / (parts * size)), Math.floor(k / size) % parts];
+      return 1000 * frame + 100 * part + (Math.floor(k / 3) % corners) + (k % 3) / 10;
+    });
+  };
   return { joints: array(2, 8), beams: array(1, 12), jointCount: 2, beamCount: 1, ...numbers };
 }
 

@@ -11,7 +11,8 @@ const text = (data) => deflateRawSync(data).toString("base64url");
 
 test("a document comes back as it was, whatever letters its name has", async () => {
   for (const name of ["", "Twist", "Größe \u{1f980} 中文 \u0000\"\\", "é".repeat(200)]) {
-    const document = { ...square({ actuators: [0.3, -1, 1e-6, 0], goals: [{ vertex: ["beam", 1, "end", 2] }] }), name };
+    const goals = [{ vertex: ["beam", 1, "end", 2] }];
+    const document = { ...square({ actuators: [0.3, -1, 1e-6, 0], goals }), name };
     const link = await encode(document);
     assert.match(link, /^[A-Za-z0-9_-]+$/);
     assert.deepEqual(await decode(link), document);
@@ -25,9 +26,11 @@ test("a link of a usual design is short", async () => {
 
 test("garbage is refused in a sentence", async () => {
   const link = await encode(square());
-  const damaged = [link.slice(0, -5), link.slice(3), "AAAA", "A", text("{}x"), text(Buffer.from([0xff, 0xfe]))];
-  for (const one of damaged) await assert.rejects(decode(one), /The link is damaged or incomplete/, one.slice(0, 20));
-  for (const one of ["", "a b", "ü", "a=b", undefined, 7, null]) await assert.rejects(decode(one), /characters that no link has/);
+  const noText = text(Buffer.from([0xff, 0xfe]));
+  for (const one of [link.slice(0, -5), link.slice(3), "AAAA", "A", text("{}x"), noText])
+    await assert.rejects(decode(one), /The link is damaged or incomplete/, one.slice(0, 20));
+  for (const one of ["", "a b", "ü", "a=b", undefined, 7, null])
+    await assert.rejects(decode(one), /characters that no link has/);
   await assert.rejects(decode(text("{}")), /schema is missing/);
   await assert.rejects(decode(text("null")), /the document is null/);
   await assert.rejects(decode(text('{"schema": "simulearn.document/1"}')), /the grid is missing/);
@@ -36,7 +39,8 @@ test("garbage is refused in a sentence", async () => {
   const letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
   for (let k = 0; k < 200; k += 1) {
     const one = Array.from({ length: 1 + random() * 60 }, () => letters[Math.floor(random() * 64)]).join("");
-    await assert.rejects(decode(one), (error) => /^(The link|The design|the document|schema)/.test(error.message));
+    const plain = ({ message }) => /^(The link|The design|the document|schema)/.test(message);
+    await assert.rejects(decode(one), plain);
   }
 });
 
@@ -54,5 +58,6 @@ test("a link with more than a design can be is refused before it fills the memor
 
 test("lists in lists are refused, not followed", async () => {
   const nested = "[".repeat(400_000) + "]".repeat(400_000);
-  await assert.rejects(decode(text(`{"schema": "simulearn.document/1", "grid": ${nested}}`)), (error) => error.message.length < 200);
+  const link = text(`{"schema": "simulearn.document/1", "grid": ${nested}}`);
+  await assert.rejects(decode(link), ({ message }) => /^the grid is nested too deeply/.test(message));
 });

@@ -90,7 +90,9 @@ test("lengths, angles and bounds", () => {
   const { grid } = square();
   assert.equal(measure.beamLength(grid, 1), 60);
   assert.deepEqual([0, 1, 2, 3].map((b) => measure.beamAngle(grid, b)), [0, 90, 180, -90]);
-  assert.deepEqual(measure.bounds(grid), { min: [0, 0], max: [60, 60], middle: [30, 30], width: 60, height: 60 });
+  assert.deepEqual(measure.bounds(grid), {
+    min: [0, 0], max: [60, 60], middle: [30, 30], width: 60, height: 60,
+  });
   assert.equal(measure.bounds(emptyDocument().grid), null);
   assert.deepEqual(measure.beamsAt(grid, 0), [0, 3]);
   assert.deepEqual(measure.nearestJoint(grid, [50, 5]).number, 1);

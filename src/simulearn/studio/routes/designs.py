@@ -76,7 +76,7 @@ def _simulated(body: SimulateBody, settings: Settings, binary: bool, cancel: Can
         text = f"the grids have more than {settings.beams_in_all} beams in all; send fewer at once"
         raise InputError(text, "too-large", "grids")
     if body.engine == "fea" and left:
-        _check_fea([grids[k] for k in left], settings)
+        check_fea([grids[k] for k in left], settings)
     answers = engine.simulate([grids[k] for k in left], cancel=cancel)
     outcomes.update(zip(left, answers, strict=True))
     in_place = in_order(iter(outcomes.items()), len(grids))
@@ -113,7 +113,7 @@ def check_size(grid: Grid, settings: Settings) -> None:
             raise InputError(text, "too-large", "grid")
 
 
-def _check_fea(grids: Sequence[Grid], settings: Settings) -> None:
+def check_fea(grids: Sequence[Grid], settings: Settings) -> None:
     """Raise InputError where finite elements take too long for somebody to wait."""
     if len(grids) > 1 or len(grids[0].beams) > settings.fea_beams:
         text = (

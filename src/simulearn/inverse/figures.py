@@ -1,0 +1,44 @@
+"""A search in figures, for programs: what it came to, and every step on the way."""
+
+from dataclasses import asdict
+from typing import Any
+
+from simulearn.inverse.search import SearchResult
+from simulearn.inverse.task import Task
+
+
+def search_figures(task: Task, result: SearchResult) -> dict[str, Any]:
+    """Return the figures of a search as plain data: errors in mm, times in s."""
+    check = result.check
+    return {
+        "method": task.method,
+        "engine": task.engine,
+        "error_mm": result.error_mm,
+        "error_fea_mm": check.error_fea_mm if check else None,
+        "why_no_fea": check.why if check and check.error_fea_mm is None else None,
+        "apart_mm": check.apart_mm if check else None,
+        "bound_mm": check.bound_mm if check else None,
+        "agrees": check.agrees if check else None,
+        "start_mm": result.steps[0].error_mm,
+        "designs": result.designs,
+        "iterations": result.iterations,
+        "corrections": result.steps[-1].phase,
+        "seconds": round(result.seconds, 3),
+        "interrupted": result.interrupted,
+        "warnings": [asdict(message) for message in result.warnings],
+        "goals": [
+            {"vertex": vertex, "distance_mm": distance}
+            for vertex, distance in _distances(task, result)
+        ],
+        "history": [step.row() for step in result.steps],
+    }
+
+
+def _distances(task: Task, result: SearchResult) -> list[tuple[str, float]]:
+    """Return how far each vertex is from its target, by finite elements where they answered."""
+    shape = None if result.check is None else result.check.shape
+    if shape is None:
+        return []
+    aims = task.aims
+    away = aims.distances(aims.points(shape.joints[-1], shape.beams[-1]))
+    return [(str(v), float(d)) for v, d in zip(aims.vertices, away, strict=True)]
