@@ -8,7 +8,7 @@ import { emptyHistory, record, redone, undone } from "./document/history.js";
 export const state = shallowReactive({
   document: emptyDocument(),
   history: emptyHistory(),
-  selection: { joints: [], beams: [] }, // numbers in the document; replaced, never changed in place
+  selection: { joints: [], beams: [] }, // and perhaps goal; numbers in the document; replaced, never changed in place
   hover: null, // { joint } or { beam } or { goal }: what the pointer or focus is on, in any view
   tool: "select", // select, draw, split, fix
   tab: "design", // design, goals, check, print
@@ -28,6 +28,9 @@ export const state = shallowReactive({
   server: null, // { version, ready, engines, formats, model } as the server says
   pointer: null, // [x, y] in mm under the pointer, where the plan gives it
   dialog: null, // { name, ... }: the open dialog and what it is about
+  pickVertex: null, // function: the shape view calls it with the vertex that is picked next
+  suggestions: null, // { document, state, error, cards, problem }: single changes; see service/suggestions.js
+  search: null, // { document, state, steps, result, ... }: the automatic search; see service/search.js
   notices: [], // [{ id, text, action: { label, run } | null }]: short confirmations
 });
 
@@ -45,6 +48,9 @@ export const view = reactive({
   pane: "both", // plan, shape, both; narrow windows show one
   share: 0.5, // part of the width that the plan has beside the shape
   side: true, // whether the side panel is open
+  ground: true, // whether the shape stands over a grid
+  parallel: false, // whether the shape is seen in parallel projection
+  overlay: true, // whether the tab "check" lays the finite elements' shape over the shown one
   tip: true, // whether the line for the first minute is shown
 });
 

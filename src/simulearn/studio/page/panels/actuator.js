@@ -11,6 +11,12 @@ import { ratioWords } from "./parts.js";
 const USUAL = 0.5; // ratio that a passive beam gets when a half is chosen
 const QUARTER = 25; // %
 
+/** Return the bar from the middle of the track to a ratio. */
+const fill = (ratio) => h("span", {
+  class: ["ratio-fill", ratio > 0 ? "top" : "bottom"],
+  style: { left: `${50 + 50 * Math.min(0, ratio)}%`, width: `${50 * Math.abs(ratio)}%` },
+});
+
 export const Actuator = {
   props: { beams: Array },
   setup: (props) => () => {
@@ -42,6 +48,7 @@ export const Actuator = {
       h("div", { class: "ratio" }, [
         iconButton("minus", t("common.ratioLess"), () => step(-1), { disabled: ratio === -1 }),
         h("div", { class: "ratio-track" }, [
+          ratio !== null && h("div", { class: "ratio-inner" }, [fill(ratio)]),
           h("input", {
             type: "range", min: -100, max: 100, step: QUARTER, value: ratio === null ? 0 : 100 * ratio,
             "aria-label": t("common.ratio"), "aria-valuetext": ratio === null ? t("common.various") : ratioWords(ratio),

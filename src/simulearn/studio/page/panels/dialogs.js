@@ -67,9 +67,17 @@ const DIALOGS = {
 };
 
 export const Dialogs = {
-  render() {
-    const { name, ...props } = state.dialog ?? {};
-    return name ? h(DIALOGS[name], { key: name, ...props }) : null;
+  setup() {
+    let shown = null;
+    let key = 0; // another dialog of the same kind is a new one
+    return () => {
+      if (state.dialog !== shown) {
+        shown = state.dialog;
+        key += 1;
+      }
+      const { name, ...props } = shown ?? {};
+      return name ? h(DIALOGS[name], { key, ...props }) : null;
+    };
   },
 };
 

@@ -108,7 +108,7 @@ function grid() {
       [t("common.beams"), beams.length],
       box && [t("common.size"), `${mm(box.width)} × ${mm(box.height)} mm`],
       result && [t("common.dimension"), `${mm(result.dimension_mm)} mm`],
-      result && [t("common.rise"), `${mm(result.rise_mm)} mm`],
+      result && [t("common.heights"), t("common.fromTo", { from: mm(result.lowest_mm), to: mm(result.highest_mm) })],
       [t("common.material"), state.material?.title ?? state.document.grid.material],
     ]),
     joints.length > 0 && h(Transform, { selection: null }),

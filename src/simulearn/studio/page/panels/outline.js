@@ -1,11 +1,30 @@
 // Every joint and beam in a list: what the plan shows, for keyboards and screen readers.
 
-import { computed, h, nextTick, ref, watch } from "/libraries/vue.js";
+import { computed, h, nextTick, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
 import { removeParts, stepActuators } from "../document/edit.js";
 import { edit, select, state } from "../store.js";
 import { t } from "../text/text.js";
 import { icon } from "./icons.js";
 import { beamWords, isSelected, jointWords, messagesOfParts, toggle } from "./parts.js";
+
+const LATER = 100; // ms; numbers in the list follow a drag ten times a second
+
+/** Return a ref of the grid that lags behind while only places and ratios change. */
+function useCalmGrid() {
+  const shown = shallowRef(state.document.grid);
+  let timer = 0;
+  const update = () => {
+    clearTimeout(timer);
+    timer = 0;
+    shown.value = state.document.grid;
+  };
+  watch(() => state.document.grid, ({ joints, beams }) => {
+    if (joints.length !== shown.value.joints.length || beams.length !== shown.value.beams.length) update();
+    else if (timer === 0) timer = setTimeout(update, LATER);
+  });
+  onBeforeUnmount(() => clearTimeout(timer));
+  return shown;
+}
 
 const keyOf = (kind, number) => `${kind} ${number}`;
 
@@ -29,10 +48,11 @@ export const Outline = {
     const root = ref(null);
     const focused = ref(null); // key of the row that Tab reaches
     let anchor = null; // key at which a range begins
-    const marks = computed(() => messagesOfParts(state.check, state.document.grid));
+    const grid = useCalmGrid();
+    const marks = computed(() => messagesOfParts(state.check, grid.value));
     const keys = computed(() => [
-      ...state.document.grid.joints.map((_, k) => keyOf("joints", k)),
-      ...state.document.grid.beams.map((_, b) => keyOf("beams", b)),
+      ...grid.value.joints.map((_, k) => keyOf("joints", k)),
+      ...grid.value.beams.map((_, b) => keyOf("beams", b)),
     ]);
     const element = (key) => root.value?.querySelector(`[data-part="${key}"]`);
     const partOf = (key) => {
@@ -79,8 +99,8 @@ export const Outline = {
       } else if (event.key === " " || event.key === "Enter") {
         choose(key, event);
       } else if (event.key === "a" && (event.ctrlKey || event.metaKey)) {
-        const { grid } = state.document;
-        select({ joints: grid.joints.map((_, k) => k), beams: grid.beams.map((_, b) => b) });
+        const parts = state.document.grid;
+        select({ joints: parts.joints.map((_, k) => k), beams: parts.beams.map((_, b) => b) });
       } else if (direction && beams.length) {
         edit((document) => stepActuators(document, beams, direction), { label: t("common.didRatios", { n: beams.length }) });
       } else if (event.key === "Delete" || event.key === "Backspace") {
@@ -111,13 +131,13 @@ export const Outline = {
       const key = joints.length ? keyOf("joints", joints.at(-1)) : beams.length ? keyOf("beams", beams.at(-1)) : null;
       if (!key || root.value?.contains(globalThis.document.activeElement)) return;
       focused.value = key;
-      nextTick(() => reveal(root.value, element(key)));
+      nextTick(() => reveal(root.value?.parentElement, element(key)));
     }, { immediate: true });
 
     const row = (kind, words) => (_, number) => {
       const messages = marks.value[kind].get(number) ?? [];
       const key = keyOf(kind, number);
-      const { name, detail } = words(state.document.grid, number);
+      const { name, detail } = words(grid.value, number);
       return h(Row, {
         key, id: key, name, detail,
         level: messages.length ? (messages.some((one) => one.kind === "error") ? "error" : "warning") : undefined,
@@ -127,7 +147,7 @@ export const Outline = {
       });
     };
     return () => {
-      const { joints, beams } = state.document.grid;
+      const { joints, beams } = grid.value;
       return h("section", { class: "outline", "aria-label": t("common.parts") }, [
         h("h2", t("common.parts")),
         h("div", {

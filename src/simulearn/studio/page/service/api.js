@@ -50,12 +50,12 @@ export const library = () => json("/api/library");
 export const materials = () => json("/api/materials");
 export const printers = () => json("/api/printers");
 
-/** Return the results of grids, as `parseFrames` gives them. */
+/** Return the results of grids, as `parseFrames` gives them; each has its `grid`, to be drawn by. */
 export async function simulate(grids, { engine = "learned", signal } = {}) {
   const response = await request("/api/simulate", {
     method: "POST", body: { grids, engine }, accept: MEDIA_TYPE, signal,
   });
-  return parseFrames(await response.arrayBuffer());
+  return parseFrames(await response.arrayBuffer()).map((result, k) => ({ ...result, grid: grids[k] }));
 }
 
 export const rank = (task, signal) => post("/api/rank", task, signal);
@@ -64,7 +64,9 @@ export const gcode = (grids, printer, names) => post("/api/gcode", { grids, prin
 
 export const startOptimize = (task) => post("/api/optimize", task);
 export const startFea = (grids) => post("/api/fea", { grids });
-export const job = (id, signal) => json(`/api/jobs/${id}`, { signal });
+
+/** Return how far a job is, with the steps that are new after the first `since`. */
+export const job = (id, { since = 0 } = {}) => json(`/api/jobs/${id}?since=${since}`);
 export const cancelJob = (id) => request(`/api/jobs/${id}`, { method: "DELETE" });
 
 /** Return the results of a job that is done, as `parseFrames` gives them. */

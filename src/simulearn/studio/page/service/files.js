@@ -6,7 +6,7 @@ import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
 
-const ENDINGS = ".json,.csv,.txt,.dxf,.svg,.3dm";
+const ENDINGS = ".json,application/json";
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
 
 /** Let the user choose a file, and open it. */
@@ -32,8 +32,8 @@ export async function open(file) {
   const { grid, goals = [], name, messages = [], printer } = found;
   let document;
   try {
-    const { schema, printer: usual } = emptyDocument();
-    document = readDocument({ schema, name: name ?? "", grid, goals, printer: printer ?? state.document.printer ?? usual });
+    const { schema } = emptyDocument();
+    document = readDocument({ schema, name, grid, goals, printer: printer || state.document.printer });
   } catch (error) {
     state.dialog = { name: "message", title: t("common.openFailed", { file: file.name }), text: error.message };
     return;

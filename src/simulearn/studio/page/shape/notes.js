@@ -1,0 +1,136 @@
+// What is written and can be taken hold of in the view: dimensions, heights, points that become goals,
+// targets and the handles that move one. From the page's state to items of the annotations.
+
+import { moveGoal, vertexPoint } from "../document/goals.js";
+import { edit, endMerge, select, state, view } from "../store.js";
+import { t } from "../text/text.js";
+import { dimensionItems } from "./dimensions.js";
+import { dragged, gizmoItems, LENGTH } from "./gizmo.js";
+import { skinBounds } from "./skin.js";
+import { centreAt } from "./topology.js";
+import { number } from "./words.js";
+
+const MOST_HEIGHTS = 40; // numbers that are still read
+const MOST_DOTS = 160; // points that are offered: above, beams have none
+const TENTH = 10; // targets are set in tenths of a millimetre
+
+const mm = (value) => t("shape.mm", { mm: number(value) });
+
+/** Return the items for what the view shows: its skin, the result and whether goals are worked on. */
+export function noteItems(viewer, result, { goals }) {
+  const items = [];
+  if (view.dimensions) items.push(...dimensionItems(skinBounds(viewer.body.skin), mm));
+  if (view.heights) items.push(...heightItems(result));
+  if (goals) items.push(...pointItems(result), ...targetItems(result));
+  return items;
+}
+
+function heightItems(result) {
+  const joints = result.joint_numbers.map((joint, index) => ({ joint, at: centreAt(result, "joint", index, view.frame) }));
+  joints.sort((a, b) => Math.abs(b.at[2]) - Math.abs(a.at[2]));
+  return joints.slice(0, MOST_HEIGHTS).map(({ joint, at }) => ({
+    id: `height-${joint}`, kind: "text", className: "note-height", at, shift: [0, -14], text: number(at[2]),
+  }));
+}
+
+/** The points of the shape that can become goals, while the page waits for one. */
+function pointItems(result) {
+  if (!state.pickVertex) return [];
+  const centres = (kind, numbers, vertex) => numbers.map((k, index) => ({
+    id: `${kind}-${k}`, kind: "dot", className: "note-point", at: centreAt(result, kind, index, view.frame),
+    name: t(`shape.point-${kind}`, { number: k }),
+    onPress: () => state.pickVertex?.(vertex(k)),
+    onKey: (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      event.stopPropagation();
+      state.pickVertex?.(vertex(k));
+    },
+    onHover: (on) => { state.hover = on ? { [kind]: k } : null; },
+  }));
+  const joints = centres("joint", result.joint_numbers, (k) => ["joint", k, "centre"]);
+  const beams = centres("beam", result.beam_numbers, (b) => ["beam", b, "middle", "centre"]);
+  return joints.length + beams.length > MOST_DOTS ? joints : [...beams, ...joints];
+}
+
+function targetItems(result) {
+  return state.document.goals.flatMap((goal, k) => {
+    const { vertex, target } = goal;
+    const point = vertexPoint(result, vertex, view.frame);
+    const chosen = state.selection.goal === k;
+    const className = `note-goal ${chosen ? "chosen" : ""} ${state.hover?.goal === k ? "near" : ""}`;
+    const distance = point && Math.hypot(...point.map((x, axis) => x - target[axis]));
+    const marker = {
+      id: `target-${k}`, kind: "target", at: target, className,
+      name: t("shape.target", { number: k + 1, mm: distance === null ? "–" : number(distance) }),
+      onPress: () => select({ goal: k }), onKey: (event) => nudge(event, k),
+      onHover: (on) => { state.hover = on ? { goal: k } : null; },
+    };
+    if (!point) return [marker];
+    return [
+      { id: `way-${k}`, kind: "line", a: point, b: target, className },
+      { id: `place-${k}`, kind: "dot", at: point, className },
+      { id: `apart-${k}`, kind: "text", at: target, shift: [0, -16], text: mm(distance), className },
+      marker,
+    ];
+  });
+}
+
+/** Move target k by keys: arrows in the plane, PageUp and PageDown along z; 1 mm, with shift 10. */
+function nudge(event, k) {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const way = {
+    ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0], ArrowUp: [0, 1, 0],
+    PageDown: [0, 0, -1], PageUp: [0, 0, 1],
+  }[event.key];
+  if (event.key === "Enter" || event.key === " ") select({ goal: k });
+  else if (way) {
+    const { target } = state.document.goals[k];
+    move(k, target.map((x, axis) => x + way[axis] * (event.shiftKey ? 10 : 1)));
+  } else return;
+  event.preventDefault();
+  event.stopPropagation();
+}
+
+function move(k, target) {
+  const tidy = target.map((x) => Math.round(x * TENTH) / TENTH);
+  edit((document) => moveGoal(document, k, tidy), {
+    label: t("shape.moveTarget", { number: k + 1 }), merge: `goal-${k}-target`,
+  });
+}
+
+/** Return project -> handles of the selected target, or null where none is. */
+export function handlesOf(viewer) {
+  const k = state.selection.goal;
+  if (!(k in state.document.goals)) return null;
+  const onPress = (event, handle) => drag(viewer, event, handle, k);
+  return (project) => {
+    const { target } = state.document.goals[k] ?? {};
+    if (!target) return [];
+    const size = LENGTH * viewer.pixel(target);
+    return gizmoItems(target, size, project, { onPress, name: (axes) => t("shape.moveAlong", { axes }), active });
+  };
+}
+
+let active = null; // id of the handle that is dragged
+
+function drag(viewer, event, handle, k) {
+  const element = event.currentTarget;
+  const start = state.document.goals[k].target;
+  const begin = viewer.rayAt(event.clientX, event.clientY);
+  active = handle.id;
+  const follow = (now) => {
+    if (now.pointerId !== event.pointerId || !(k in state.document.goals)) return;
+    move(k, dragged(start, handle, begin, viewer.rayAt(now.clientX, now.clientY)));
+  };
+  const end = (now) => {
+    if (now.pointerId !== event.pointerId) return;
+    active = null;
+    endMerge();
+    for (const [name, listener] of listeners) globalThis.removeEventListener(name, listener);
+    viewer.stage.invalidate();
+  };
+  const listeners = [["pointermove", follow], ["pointerup", end], ["pointercancel", end]];
+  for (const [name, listener] of listeners) globalThis.addEventListener(name, listener);
+  element.releasePointerCapture?.(event.pointerId); // touch captures the handle, which is made anew
+}

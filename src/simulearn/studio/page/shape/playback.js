@@ -1,0 +1,84 @@
+// The timeline: from flat to morphed by a slider, or playing.
+
+import { h, onBeforeUnmount, watch } from "/libraries/vue.js";
+import { view } from "../store.js";
+import { t } from "../text/text.js";
+import { icon } from "./icons.js";
+import { advance, clockAt, nextFrame, snapFrame } from "./timeline.js";
+import { LAST } from "./topology.js";
+import { moment } from "./words.js";
+
+/** Start or stop playing. */
+export function togglePlay() {
+  view.playing = !view.playing;
+}
+
+export const Playback = {
+  props: { snaps: Array, disabled: Boolean },
+  setup(props) {
+    let [clock, last, request] = [0, 0, 0];
+    const step = (now) => {
+      request = 0;
+      if (!view.playing) return;
+      const next = advance(clock, Math.min(0.1, (now - last) / 1000), view.loop);
+      last = now;
+      clock = next.clock;
+      view.frame = next.frame;
+      view.playing = next.playing;
+      if (view.playing) request = requestAnimationFrame(step);
+    };
+    watch(() => view.playing && !props.disabled, (on) => {
+      cancelAnimationFrame(request);
+      if (!on) return;
+      clock = clockAt(view.frame);
+      last = performance.now();
+      request = requestAnimationFrame(step);
+    });
+    onBeforeUnmount(() => {
+      cancelAnimationFrame(request);
+      view.playing = false;
+    });
+    const show = (frame) => {
+      view.playing = false;
+      view.frame = frame;
+    };
+    const onKeydown = (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 3, PageDown: -3 }[event.key];
+      if (way) show(Math.min(LAST, Math.max(0, nextFrame(view.frame, Math.sign(way)) + way - Math.sign(way))));
+      else if (event.key === "Home") show(0);
+      else if (event.key === "End") show(LAST);
+      else return;
+      event.preventDefault();
+    };
+    return () => h("div", { class: "shape-timeline" }, [
+      h("button", {
+        type: "button", class: "shape-button play", disabled: props.disabled,
+        "aria-label": t(view.playing ? "shape.pause" : "shape.play"),
+        title: `${t(view.playing ? "shape.pause" : "shape.play")} (${t("shape.space")})`, onClick: togglePlay,
+      }, icon(view.playing ? "pause" : "play")),
+      h("button", {
+        type: "button", class: "shape-button", "aria-label": t("shape.loop"), title: t("shape.loop"),
+        "aria-pressed": view.loop, onClick: () => { view.loop = !view.loop; },
+      }, icon("loop")),
+      h("div", { class: "shape-slider" }, [
+        h("input", {
+          type: "range", min: 0, max: LAST, step: 0.01, value: view.frame, disabled: props.disabled,
+          "aria-label": t("shape.moment"), "aria-valuetext": moment(view.frame),
+          style: { "--done": view.frame / LAST },
+          onInput: (event) => show(snapFrame(Number(event.target.value))),
+          onKeydown,
+        }),
+        h("div", { class: "shape-marks", "aria-hidden": "true" }, [
+          ...Array.from({ length: LAST + 1 }, (_, k) => mark(k, k === 0 || k >= LAST - 1 ? "strong" : "")),
+          ...(props.snaps ?? []).map(({ released }) => mark(10 * released, "snap", t("shape.snapsHere"))),
+        ]),
+      ]),
+      h("output", { class: "shape-moment" }, moment(view.frame)),
+    ]);
+  },
+};
+
+const mark = (frame, kind, title) => h("i", {
+  key: `${kind}${frame}`, class: kind, title, style: { left: `${(100 * frame) / LAST}%` },
+});

@@ -1,0 +1,264 @@
+// The 3D view without the page around it: shows results, ghosts, overlays and prints in a container,
+// from plain data, and says what the pointer is on. Used by the studio and by files that stand alone.
+
+import { THREE } from "/libraries/three.js";
+import { createAnnotations } from "./annotations.js";
+import { createBody } from "./body.js";
+import { createCamera } from "./camera.js";
+import { createGround } from "./ground.js";
+import { pick } from "./picking.js";
+import { createPrint } from "./print.js";
+import { createStage } from "./stage.js";
+import { readTheme, watchTheme } from "./theme.js";
+import { boundsOf, LAST } from "./topology.js";
+
+export { canDraw } from "./stage.js";
+
+const CLICK = 5; // px that a press may move and still be no drag
+const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
+const TURN = Math.PI / 24; // of an arrow key
+const ZOOM = 1.15; // of + and -
+
+/** What keys do in the view; as in Blender where it has them. */
+export const KEYS = {
+  Home: "fit", f: "fit", F: "fit", 7: "top", 1: "front", 3: "side", 0: "home", 5: "projection",
+};
+
+/** Create a viewer in a container.
+ *
+ * events: onHover(part | null), onPress(part | null, event), onCamera(state), onLost(), onRestored().
+ * A part is { kind, at, number } as in the skin. still() says whether motion is unwanted.
+ */
+export function createViewer(container, { events = {}, still = () => false } = {}) {
+  let [theme, pointer, hovering, pressed, fitted, disposed] = [readTheme(container), null, 0, null, null, false];
+  let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh] = [null, null, [], null, false, true, true];
+  const stage = createStage(container, {
+    before: drawNotes,
+    onLost: () => events.onLost?.(),
+    onRestored: () => events.onRestored?.(),
+  });
+  const camera = createCamera(stage.canvas, {
+    onChange: () => {
+      stage.setCamera(camera?.camera ?? null);
+      stage.invalidate();
+      if (camera) events.onCamera?.(camera.state(), camera.isParallel);
+    },
+    still,
+  });
+  const body = createBody();
+  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong" });
+  ghost.setFrame(0);
+  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target" });
+  const ground = createGround();
+  const print = createPrint();
+  const annotations = createAnnotations(container);
+  const parts = [body, ghost, other, ground, print];
+  ghost.group.renderOrder = 3;
+  stage.scene.add(ground.group, body.group, ghost.group, other.group, print.group);
+  const shapes = () => [ground.group, body.group, ghost.group, other.group];
+
+  function drawNotes() {
+    const items = gizmo ? [...notes, ...gizmo(project)] : notes;
+    if (gizmo) annotations.set(items);
+    annotations.draw(project);
+  }
+
+  const vector = new THREE.Vector3();
+  function project(point) {
+    vector.fromArray(point).project(camera.camera);
+    return {
+      x: ((vector.x + 1) / 2) * stage.size.width,
+      y: ((1 - vector.y) / 2) * stage.size.height,
+      seen: vector.z < 1 && vector.z > -1,
+    };
+  }
+
+  const rayAt = (x, y) => {
+    const box = stage.canvas.getBoundingClientRect();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(
+      new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2), camera.camera,
+    );
+    return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() };
+  };
+  const partAt = ({ clientX, clientY }) => {
+    if (!body.shown || printing) return null;
+    const { origin, direction } = rayAt(clientX, clientY);
+    return pick(body.skin, origin, direction)?.part ?? null;
+  };
+
+  const onMove = (event) => {
+    if (event.buttons) return;
+    pointer = event;
+    hovering ||= requestAnimationFrame(() => { // trackpads send several moves for one drawing
+      hovering = 0;
+      if (pointer) events.onHover?.(partAt(pointer));
+    });
+  };
+  const onLeave = () => {
+    pointer = null;
+    events.onHover?.(null);
+  };
+  const onDown = (event) => {
+    pressed = event.isPrimary && event.button === 0 ? { x: event.clientX, y: event.clientY } : null;
+  };
+  const onUp = (event) => {
+    if (!pressed || Math.hypot(event.clientX - pressed.x, event.clientY - pressed.y) > CLICK) return;
+    pressed = null;
+    events.onPress?.(partAt(event), event);
+  };
+  const listeners = {
+    pointermove: onMove, pointerleave: onLeave, pointerdown: onDown, pointerup: onUp, dblclick: () => viewer.fit(),
+  };
+  for (const [name, listener] of Object.entries(listeners)) stage.canvas.addEventListener(name, listener);
+
+  const applyTheme = () => {
+    theme = readTheme(container);
+    stage.scene.background = new THREE.Color().setRGB(...theme.canvas, THREE.LinearSRGBColorSpace);
+    for (const part of parts) part.setTheme(theme);
+    stage.invalidate();
+  };
+  const endTheme = watchTheme(() => requestAnimationFrame(() => !disposed && applyTheme()));
+  const observer = new ResizeObserver(([entry]) => {
+    const { width, height } = entry.contentRect;
+    if (width === 0 || height === 0) return;
+    stage.resize(width, height);
+    camera.resize(width, height);
+    if (!camera.touched) viewer.fit({ view: fresh ? "home" : null, animate: false });
+  });
+  observer.observe(container);
+  applyTheme();
+  stage.setCamera(camera.camera);
+
+  const boxPoints = () => {
+    if (!body.shown) return [];
+    const { low, high } = boundsOf(body.shown.result, 0, LAST);
+    return [low, high].flatMap(([x]) => [low, high].flatMap(([, y]) => [low, high].map(([, , z]) => [x, y, z])));
+  };
+  const sizeOf = ({ low, high }) => Math.hypot(...high.map((x, axis) => x - low[axis]));
+  const grown = (bounds) => {
+    const ratio = sizeOf(bounds) / sizeOf(fitted);
+    const away = Math.hypot(...bounds.low.map((x, k) => (x + bounds.high[k] - fitted.low[k] - fitted.high[k]) / 2));
+    return ratio > GROWN || ratio < 1 / GROWN || away > 0.5 * sizeOf(fitted);
+  };
+
+  const viewer = {
+    stage, camera, body, project, rayAt,
+    /** Return mm that one pixel is at a point [x, y, z]. */
+    pixel: (point) => camera.pixel(new THREE.Vector3(...point)),
+    /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
+    show(result, grid = null) {
+      body.show(result, grid);
+      ghost.show(ghostShown ? result : null, grid);
+      if (result) {
+        ground.place(boundsOf(result, 0, 0), body.mesh);
+        const bounds = boundsOf(result);
+        if (!fitted || grown(bounds)) {
+          fitted = bounds;
+          viewer.fit({ view: fresh ? "home" : null, animate: false });
+        }
+      }
+      ground.setVisible(Boolean(result));
+      viewer.overlay(overlaid);
+      stage.invalidate();
+    },
+    setFrame(frame) {
+      body.setFrame(frame);
+      other.setFrame(frame);
+      ghost.group.visible = ghostShown && Boolean(body.shown) && !printing && frame > 0.02;
+      stage.invalidate();
+    },
+    setColour(by, reference = null) {
+      body.setColour(by, reference);
+      stage.invalidate();
+    },
+    setGhost(on) {
+      ghostShown = on;
+      if (body.shown) ghost.show(on ? body.shown.result : null, body.shown.grid);
+      stage.invalidate();
+    },
+    setGround(on) {
+      ground.setVisible(on && Boolean(body.shown) && !printing);
+      stage.invalidate();
+    },
+    setDim(dim) {
+      body.setDim(dim);
+      stage.invalidate();
+    },
+    setMarks(marks) {
+      body.setMarks(marks);
+      stage.invalidate();
+    },
+    /** Lay another result of the same grid over the shown one, translucent; null for none. */
+    overlay(result) {
+      overlaid = result;
+      other.show(body.shown ? result : null, body.shown?.grid ?? null);
+      stage.invalidate();
+    },
+    /** Show annotations; `handles` (project -> items) are made anew for every drawing. */
+    setNotes(items, handles = null) {
+      notes = items;
+      gizmo = handles;
+      annotations.set(handles ? [...items, ...handles(project)] : items);
+      stage.invalidate();
+    },
+    /** Show a toolpath in place of the shape, seen from above; null brings the shape back. */
+    setPrint(toolpath, bed = null) {
+      const on = toolpath !== null;
+      if (print.path !== toolpath) print.show(toolpath, bed);
+      if (on !== printing) {
+        printing = on;
+        for (const group of shapes()) group.visible = !on && Boolean(body.shown);
+        if (!on) {
+          ghost.group.visible = ghostShown && Boolean(body.shown);
+          other.group.visible = Boolean(overlaid && body.shown);
+        }
+        if (on) kept = camera.state();
+        else if (kept) camera.set(kept);
+        if (on) viewer.fit({ view: [0, 0.42], animate: false });
+      }
+      stage.invalidate();
+    },
+    setLayer(layer, travels) {
+      print.setLayer(layer, travels);
+      stage.invalidate();
+    },
+    fit(options = {}) {
+      const points = printing ? print.points() : boxPoints();
+      if (points.length && stage.size.width) {
+        fresh = false;
+        if (!printing) fitted = boundsOf(body.shown.result);
+        camera.fit(points, options);
+      }
+    },
+    /** Do what a key of `KEYS` says, orbit by arrows, zoom by + and -; return whether it did. */
+    onKey({ key, shiftKey, ctrlKey, metaKey, altKey }) {
+      if (ctrlKey || metaKey || altKey) return false;
+      const arrow = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[key];
+      if (arrow && shiftKey) camera.pan(40 * arrow[0], -40 * arrow[1]);
+      else if (arrow) camera.orbit(TURN * arrow[0], TURN * arrow[1]);
+      else if (key === "+" || key === "=") camera.zoom(ZOOM);
+      else if (key === "-" || key === "_") camera.zoom(1 / ZOOM);
+      else if (KEYS[key]) viewer.command(KEYS[key]);
+      else return false;
+      return true;
+    },
+    command(name) {
+      if (name === "fit") viewer.fit();
+      else if (name === "projection") camera.setParallel(!camera.isParallel);
+      else camera.look(name);
+    },
+    dispose() {
+      disposed = true;
+      endTheme();
+      observer.disconnect();
+      cancelAnimationFrame(hovering);
+      for (const [name, listener] of Object.entries(listeners)) stage.canvas.removeEventListener(name, listener);
+      annotations.dispose();
+      camera.dispose();
+      for (const part of parts) part.dispose();
+      stage.dispose();
+    },
+  };
+  return viewer;
+}
