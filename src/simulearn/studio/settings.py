@@ -29,6 +29,7 @@ class Settings:
         job_workers: jobs computed at the same time.
         jobs_waiting: jobs that may wait.
         job_seconds: longest time of a job.
+        export_seconds: longest time to write a file, for those that can be stopped.
     """
 
     hosts: tuple[str, ...] = ()
@@ -48,3 +49,4 @@ class Settings:
     job_workers: int = 2
     jobs_waiting: int = 20
     job_seconds: float = 600.0
+    export_seconds: float = 120.0

@@ -6,7 +6,7 @@ import { newDocument } from "../service/saving.js";
 import { edit, endMerge, notify, redo, state, undo, view } from "../store.js";
 import { LANGUAGES, t } from "../text/text.js";
 import { Menu, button, iconButton } from "./controls.js";
-import { useMedia } from "./media.js";
+import { NARROW, useMedia } from "./media.js";
 import { savingState } from "./status.js";
 import { PaneSwitch } from "./views.js";
 
@@ -73,7 +73,7 @@ const settings = () => [
 
 export const Bar = {
   setup() {
-    const narrow = useMedia("(max-width: 899px)");
+    const narrow = useMedia(NARROW);
     return () => h("header", { class: "bar" }, [
       h("div", { class: "bar-part" }, [
         h("a", { class: "brand", href: "/", title: t("common.studio"), "aria-label": t("common.studio") },
@@ -87,8 +87,8 @@ export const Bar = {
         step("redo", state.history.future.at(-1), "redo", redo),
         narrow.value ? iconButton("library", t("common.library"), dialog("library"))
           : button(t("common.library"), dialog("library"), { glyph: "library", kind: "quiet" }),
-        h(Menu, { label: t("common.file"), glyph: "file", items: files(), iconOnly: narrow.value, end: true }),
-        h(Menu, { label: t("common.settings"), glyph: "settings", items: settings(), iconOnly: true, end: true }),
+        h(Menu, { label: t("common.file"), glyph: "file", items: files(), iconOnly: narrow.value }),
+        h(Menu, { label: t("common.settings"), glyph: "settings", items: settings(), iconOnly: true }),
         iconButton("help", t("common.help"), dialog("help"), { class: "icon-button wide-only" }),
       ]),
     ]);

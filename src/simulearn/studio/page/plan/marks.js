@@ -42,7 +42,7 @@ function height(grid, k) {
   });
   const side = steep ? -1 : 1;
   return h("g", { key: k, transform: `translate(${x} ${y})` },
-    h("g", { class: "upright" }, h("text", { class: side < 0 ? "left" : "right", x: 11 * side, y: -10 }, `↑ ${shown(z)}`)));
+    h("g", { class: "upright" }, h("text", { class: side < 0 ? "left" : "right", x: 11 * side, y: -10 }, `z ${shown(z)}`)));
 }
 
 function badge(grid, part, { kind }) {

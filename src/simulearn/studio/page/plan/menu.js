@@ -1,13 +1,13 @@
 // The context menu of a part, or of an empty place.
 
-import { h, nextTick, watch } from "/libraries/vue.js";
+import { Teleport, h, nextTick, onBeforeUnmount, onMounted, watch } from "/libraries/vue.js";
 import { select, state } from "../store.js";
 import { t } from "../text/text.js";
 import {
   canPaste, copySelection, duplicateSelection, fitAll, fixJoint, flipBeams, mirrorSelection, paste,
   removeSelection, rotateSelection, selectAll, setBeams, splitMiddle, stepBeams,
 } from "./actions.js";
-import { editor, focusPart } from "./editor.js";
+import { editor, focusPart, onPage } from "./editor.js";
 import { isSelected, only } from "./hit.js";
 import { clamped } from "./placement.js";
 
@@ -74,6 +74,11 @@ export const Menu = {
       event.preventDefault();
       event.stopPropagation();
     };
+    const onPointerdown = ({ target }) => {
+      if (editor.menu && !element?.contains(target)) editor.menu = null;
+    };
+    onMounted(() => document.addEventListener("pointerdown", onPointerdown, true));
+    onBeforeUnmount(() => document.removeEventListener("pointerdown", onPointerdown, true));
     const onFocusout = ({ relatedTarget }) => {
       if (relatedTarget && !element?.contains(relatedTarget)) editor.menu = null;
     };
@@ -82,8 +87,10 @@ export const Menu = {
       if (!menu) return null;
       const list = groups(menu.part);
       const height = list.reduce((sum, group) => sum + group.length * ROW + RULE, 0);
-      const [x, y] = clamped(menu.screen, { width: WIDTH, height }, editor.size);
-      return h("div", {
+      const window = { width: innerWidth, height: innerHeight };
+      const [x, y] = clamped(onPage(menu.screen), { width: WIDTH, height }, window);
+      // On the page itself, since a low plan would cut it off.
+      return h(Teleport, { to: "body" }, h("div", {
         class: "plan-menu", role: "menu", "aria-label": t("plan.menu"), onKeydown, onFocusout,
         ref: (el) => {
           element = el;
@@ -97,7 +104,7 @@ export const Menu = {
             close();
             run();
           },
-        }, [h("span", label), h("kbd", { "aria-hidden": "true" }, key)])))));
+        }, [h("span", label), h("kbd", { "aria-hidden": "true" }, key)]))))));
     };
   },
 };

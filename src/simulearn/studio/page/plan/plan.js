@@ -7,11 +7,11 @@ import {
   copySelection, duplicateSelection, flipBeams, mirrorSelection, moveFocus, nudge, paste, redoLast,
   removeSelection, rotateSelection, selectAll, setBeams, stepBeams, undoLast, useTool, hasSelection,
 } from "./actions.js";
-import { anyVisible, toScreen } from "./camera.js";
-import { clearMarks, editor, fitAll, setElement } from "./editor.js";
+import { anyVisible, sizeScale, toPlan, toScreen } from "./camera.js";
+import { beamWidth, clearMarks, editor, fitAll, reach, setElement } from "./editor.js";
 import { direction, placeOf, tabStop } from "./focus.js";
 import { Grid, ScaleBar } from "./grid.js";
-import { isSelected, only, toggled } from "./hit.js";
+import { isSelected, only, partAt, toggled } from "./hit.js";
 import { command, listenKeys, nudgeStep } from "./keys.js";
 import { Marks } from "./marks.js";
 import { Menu, openMenu } from "./menu.js";
@@ -65,6 +65,7 @@ export const Plan = {
 
     /** Run what a key stands for; return whether it was used. */
     function react(event) {
+      editor.keys = true;
       const onPart = svg.contains(event.target) || event.target === document.body;
       if (event.key === " " && onPart) {
         if (!event.repeat) setSpace(true);
@@ -97,8 +98,10 @@ export const Plan = {
       event.preventDefault();
       if (event.button !== 2 || event.pointerType === "touch") return; // keys and fingers open it elsewhere
       const { left, top } = svg.getBoundingClientRect();
+      const screen = [event.clientX - left, event.clientY - top];
+      const point = toPlan(editor.camera, screen);
       currentTool().cancel();
-      openMenu([event.clientX - left, event.clientY - top], state.hover?.goal === undefined ? state.hover : null);
+      openMenu(screen, partAt(state.document.grid, point, reach(false), beamWidth()));
     };
 
     const onFocusin = ({ target }) => {
@@ -124,7 +127,7 @@ export const Plan = {
     }
 
     return () => h("section", {
-      class: ["plan", `tool-${state.tool}`], "aria-label": t("plan.title"),
+      class: ["plan", `tool-${state.tool}`, { keys: editor.keys }], "aria-label": t("plan.title"),
       ref: (el) => {
         section = el;
       },
@@ -136,7 +139,7 @@ export const Plan = {
         ref: (el) => {
           svg = el;
         },
-      }, [h(Patterns), h(Grid), h(World)]),
+      }, [h(Grid), h(World)]),
       h(Empty), h(Toolbar), h(Hint), h(Zooms), h(ScaleBar), h(Readout), h(Popover), h(Menu), h(Message),
     ]);
   },
@@ -168,6 +171,7 @@ function resize(width, height) {
   if (width === 0 || height === 0) return; // hidden
   const { camera, size } = editor;
   editor.size = { width, height };
+  if (editor.pressed) return; // what the hand holds stays under it
   if (editor.fitted) fitAll();
   else editor.camera = { ...camera, x: camera.x + (width - size.width) / 2, y: camera.y + (height - size.height) / 2 };
 }
@@ -191,19 +195,9 @@ const World = {
     return h("g", {
       class: ["plan-world", { far: scale < 1.7 }],
       transform: `matrix(${scale} 0 0 ${-scale} ${x} ${y})`,
-      style: { "--scale": scale },
+      style: { "--scale": sizeScale(scale) },
     }, [h(Under), h(Parts), h(Marks), h(Over)]);
   },
-};
-
-/** Hatching that tells top from bottom where colours do not: lines for top, dots for bottom. */
-const Patterns = {
-  render: () => h("defs", [
-    h("pattern", { id: "plan-top", width: 2.4, height: 2.4, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
-      h("rect", { width: 0.7, height: 2.4 })),
-    h("pattern", { id: "plan-bottom", width: 2.4, height: 2.4, patternUnits: "userSpaceOnUse" },
-      h("circle", { cx: 1.2, cy: 1.2, r: 0.48 })),
-  ]),
 };
 
 const Empty = {

@@ -85,7 +85,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   }
 
   function down(event) {
-    editor.menu = null;
+    Object.assign(editor, { menu: null, keys: false, pressed: true });
     const pointer = read(event);
     point(pointer);
     if (pointer.touch) {
@@ -128,6 +128,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
 
   function up(event) {
     clearTimeout(long);
+    editor.pressed = false;
     const two = pinching !== null;
     fingers.delete(event.pointerId);
     if (fingers.size < 2) pinching = null;
@@ -151,6 +152,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   }
 
   function cancelled(event) {
+    editor.pressed = false;
     clearTimeout(long);
     fingers.delete(event.pointerId);
     pinching = null;

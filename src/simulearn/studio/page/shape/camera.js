@@ -100,12 +100,17 @@ export function createCamera(element, { onChange, still = () => false }) {
     motion = { from, to: { ...to, azimuth: from.azimuth + turn }, begun: performance.now() };
     turning = requestAnimationFrame(step);
   };
-  controls.addEventListener("start", () => { motion = null; });
+  let touched = false; // whether a person moved the view since it was fitted
+  controls.addEventListener("start", () => {
+    motion = null;
+    touched = true;
+  });
 
   return {
     controls,
     state,
     get camera() { return camera(); },
+    get touched() { return touched; },
     get isParallel() { return camera() === parallel; },
     resize(width, height) {
       Object.assign(size, { width: Math.max(1, width), height: Math.max(1, height) });
@@ -137,16 +142,20 @@ export function createCamera(element, { onChange, still = () => false }) {
         distance = Math.max(distance, (MARGIN * across) / slope + depth * p.dot(back));
       }
       go({ azimuth, polar, distance, target }, animate);
+      touched = false;
     },
     orbit(azimuth, polar) {
+      touched = true;
       const now = motion?.to ?? state();
       go({ ...now, azimuth: now.azimuth + azimuth, polar: Math.min(Math.PI, Math.max(0, now.polar + polar)) }, false);
     },
     zoom(factor) {
+      touched = true;
       const now = motion?.to ?? state();
       go({ ...now, distance: now.distance / factor }, false);
     },
     pan(x, y) {
+      touched = true;
       const now = state();
       const matrix = camera().matrixWorld.elements;
       const per = (2 * now.distance * slope) / size.height;

@@ -22,10 +22,11 @@ export const Legend = {
         h("select", { value: by, onChange: (event) => { view.colour = event.target.value; } },
           choice.map((name) => h("option", { value: name, disabled: !possible(name), selected: name === by },
             t(`shape.by-${name}`)))),
+        unit && h("span", { class: "unit" }, unit),
       ]),
       map === null ? h("ul", { class: "shape-keys" }, PARTS.map(([kind, text]) => h("li", { key: kind }, [
         h("span", { class: ["swatch", kind] }), t(`shape.${text}`),
-      ]))) : scale(map, range, unit),
+      ]))) : scale(map, range),
       by === "deviation" && distance && h("p", { class: "shape-distance" }, t("shape.distance", {
         mean: number(distance.mean, 2), max: number(distance.max, 2),
       })),
@@ -33,12 +34,11 @@ export const Legend = {
   },
 };
 
-function scale(map, range, unit) {
+function scale(map, range) {
   return h("div", { class: "shape-scale" }, [
     h("div", { class: "bar", style: { backgroundImage: `linear-gradient(to right, ${MAPS[map].join(", ")})` } }),
     h("div", { class: "ticks" }, ticks(range).map(({ at, value, digits }) => h("span", {
       key: at, style: { left: `${100 * at}%` },
     }, number(value, digits)))),
-    h("span", { class: "unit" }, unit),
   ]);
 }

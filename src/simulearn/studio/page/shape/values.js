@@ -7,7 +7,6 @@ const ACROSS = 12; // vertices of a station
 const corners = new Float64Array(36);
 const flat = new Float64Array(36);
 const ring = new Float64Array(18);
-const flatRing = new Float64Array(18);
 
 /** Return whether a result has what it would be coloured by; `reference` is the result to compare with. */
 export function hasValues(by, result, reference = null) {
@@ -69,42 +68,54 @@ function fillStress(skin, result, moment) {
   });
 }
 
-/** The stretch of the beam's edges against the flat frame, in per cent. */
+/** How much longer the long edges are than in the flat frame, in per cent: from the start to the middle
+ * and from there to the end, as the sections say no more about where along a beam they stretch. */
 function fillStrain(skin, result, moment) {
   const { values } = skin.storage;
   const size = result.beamCount * 36;
-  eachBeam(skin, ({ at, firstVertex }, { t, slope }) => {
+  eachBeam(skin, ({ at, firstVertex }, { t, runs }) => {
     blend(result.beams, size, at * 36, 36, moment, corners);
     blend(result.beams, size, at * 36, 36, { before: 0, after: 0, t: 0 }, flat);
-    for (let n = 0; n < t.length; n += 1) {
-      stretches(slope, n);
-      spread(values, firstVertex + n * ACROSS, ofRing);
-    }
+    const halves = [stretches(0), stretches(1)];
+    for (const { first, steps } of runs)
+      for (let n = first; n <= first + steps; n += 1)
+        spread(values, firstVertex + n * ACROSS, halves[t[first] >= 0.5 ? 1 : 0]);
   });
 }
 
-function stretches(slope, n) {
-  ringAt(corners, slope, n, ring);
-  ringAt(flat, slope, n, flatRing);
-  for (let k = 0; k < 6; k += 1) {
-    const now = Math.hypot(ring[3 * k], ring[3 * k + 1], ring[3 * k + 2]);
-    const before = Math.hypot(flatRing[3 * k], flatRing[3 * k + 1], flatRing[3 * k + 2]);
-    ofRing[k] = 100 * (now / before - 1);
+/** Return the stretch of the six ring points' lines in a half of a beam; those of the mid-plane are the
+ * means of the edges beside them. */
+function stretches(half) {
+  const edges = [0, 1, 2, 3].map((edge) => 100 * (arc(corners, edge, half) / arc(flat, edge, half) - 1));
+  return RING.map(([a, b]) => (edges[a] + edges[b]) / 2);
+}
+
+// Gauss's rule of three points on [0, 1]: exact enough for the length of a smooth arc
+const GAUSS = [[0.5 - Math.sqrt(0.15), 5 / 18], [0.5, 8 / 18], [0.5 + Math.sqrt(0.15), 5 / 18]];
+
+/** Return the length of an edge's parabola in a half of a beam (times a constant). */
+function arc(sections, edge, half) {
+  let length = 0;
+  for (const [place, weight] of GAUSS) {
+    const t = (half + place) / 2;
+    let square = 0;
+    for (let axis = 0; axis < 3; axis += 1) {
+      const k = 3 * edge + axis;
+      square += ((4 * t - 3) * sections[k] + (4 - 8 * t) * sections[k + 12] + (4 * t - 1) * sections[k + 24]) ** 2;
+    }
+    length += weight * Math.sqrt(square);
   }
+  return length;
 }
 
 function strainRange(result) {
-  const slope = [-3, 4, -1, -1, 0, 1, 1, -4, 3]; // at the three sections
+  const size = result.beamCount * 36;
   let most = 0;
   for (let frame = 1; frame < FRAMES; frame += 1) {
     for (let b = 0; b < result.beamCount; b += 1) {
-      const size = result.beamCount * 36;
       blend(result.beams, size, b * 36, 36, { before: frame, after: frame, t: 0 }, corners);
       blend(result.beams, size, b * 36, 36, { before: 0, after: 0, t: 0 }, flat);
-      for (let n = 0; n < 3; n += 1) {
-        stretches(slope, n);
-        for (const value of ofRing) most = Math.max(most, Math.abs(value));
-      }
+      for (const value of [...stretches(0), ...stretches(1)]) most = Math.max(most, Math.abs(value));
     }
   }
   return [-most, most];

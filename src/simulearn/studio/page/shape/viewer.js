@@ -121,11 +121,10 @@ export function createViewer(container, { events = {}, still = () => false } = {
   const endTheme = watchTheme(() => requestAnimationFrame(() => !disposed && applyTheme()));
   const observer = new ResizeObserver(([entry]) => {
     const { width, height } = entry.contentRect;
-    const first = stage.size.width === 0;
     if (width === 0 || height === 0) return;
     stage.resize(width, height);
     camera.resize(width, height);
-    if (first) viewer.fit({ view: "home", animate: false });
+    if (!camera.touched) viewer.fit({ view: fresh ? "home" : null, animate: false });
   });
   observer.observe(container);
   applyTheme();

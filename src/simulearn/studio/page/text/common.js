@@ -149,7 +149,7 @@ export const common = {
     updating: "Updating…",
     noAnswer: "Waiting for the server",
     rises: "Valid, rises {mm} mm",
-    sinks: "Valid, sinks {mm} mm",
+    sinks: "Valid, falls {mm} mm",
     answered: "Computed in {ms} ms",
     bound: "Error below {mm} mm",
     boundHint: "Nine of ten answers like this one are that near to finite elements, on average",

@@ -135,10 +135,9 @@ function nextPoint() {
 
 function show() {
   const from = line.points.at(-1) ?? null;
-  if (pointed)
-    editor.snapped = pointed.alt
-      ? { point: pointed.point, kind: "none", guides: [] }
-      : snapOf(pointed, from);
+  if (!pointed) editor.snapped = null;
+  else if (pointed.alt) editor.snapped = { point: pointed.point, kind: "none", guides: [] };
+  else editor.snapped = snapOf(pointed, from);
   const next = pointed || isTyping(line) ? nextPoint() : null;
   const points = next && !(from && samePoint(from, next)) ? [...line.points, next] : line.points;
   editor.line = { points, fixed: line.points.length, joints: newJoints(points), next: next ?? from };
