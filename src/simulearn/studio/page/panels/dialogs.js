@@ -10,7 +10,8 @@ import { HelpDialog } from "./help.js";
 import { LibraryDialog } from "./library.js";
 import { Dialog, close } from "./dialog.js";
 
-const SHOWN = 6000; // ms that a confirmation stays
+const SHOWN = 5000; // ms that a confirmation stays
+const OFFERED = 12_000; // ms where something can be done about it
 
 const MessageDialog = {
   props: { title: String, text: String, messages: Array },
@@ -85,12 +86,13 @@ const Notice = {
   props: { notice: Object },
   setup(props) {
     let timer = 0;
-    const start = () => { timer = setTimeout(() => dismiss(props.notice.id), SHOWN); };
+    const { id, action } = props.notice;
+    const start = () => { timer = setTimeout(() => dismiss(id), action ? OFFERED : SHOWN); };
     const stop = () => clearTimeout(timer);
     onMounted(start);
     onBeforeUnmount(stop);
     return () => {
-      const { id, text, action } = props.notice;
+      const { text } = props.notice;
       const pause = { onPointerenter: stop, onPointerleave: start, onFocusin: stop, onFocusout: start };
       return h("div", { class: "notice", ...pause }, [
         h("p", text),

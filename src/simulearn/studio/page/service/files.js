@@ -52,7 +52,7 @@ export function place(document, label) {
   edit((before) => (sameGrid(before.grid, document.grid) && before.name === document.name
     && document.goals.length === 0 && before.goals.length === 0 ? before : document), { label });
   select({});
-  notify(label, { label: t("common.undoWord"), run: undo });
+  notify(t("common.placed", { name: document.name }), { label: t("common.undoWord"), run: undo });
 }
 
 /** Save the document as a file: all of it, or the grid alone as the command line reads it. */

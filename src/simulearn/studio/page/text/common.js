@@ -185,6 +185,7 @@ export const common = {
     linkCopied: "Link copied. It holds the whole design.",
     linkByHand: "The browser does not let the page copy. Copy this link by hand; it holds the whole design.",
     linkBad: "The link cannot be opened",
+    placed: "“{name}” replaces the design before",
     downloaded: "Saved {file}",
     openFailed: "{file} cannot be opened",
     openNotes: "{file} is open",
@@ -434,6 +435,7 @@ export const common = {
       "Der Browser lässt die Seite nicht kopieren. Diesen Link von Hand kopieren; er enthält den ganzen "
       + "Entwurf.",
     linkBad: "Der Link lässt sich nicht öffnen",
+    placed: "„{name}“ ersetzt den vorigen Entwurf",
     downloaded: "{file} gespeichert",
     openFailed: "{file} lässt sich nicht öffnen",
     openNotes: "{file} ist geöffnet",
