@@ -46,7 +46,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     """
     settings = settings or Settings()
     # Without /docs: its scripts come from another site, which the page's policy does not allow.
-    app = FastAPI(title="SimuLearn studio", openapi_url=None, lifespan=_lifespan)
+    app = FastAPI(openapi_url=None, redirect_slashes=False, lifespan=_lifespan)
     app.state.settings = settings
     app.state.simulations = Simulations(settings)
     app.state.jobs = Jobs(settings)

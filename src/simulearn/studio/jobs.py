@@ -171,7 +171,8 @@ class Jobs:
         job = Job(kind, work, self._settings.job_seconds, self._now)
         with self._lock:
             self._tidy()
-            if len(self._line) >= self._settings.jobs_waiting:
+            busy = sum(not job.finished for job in self._jobs.values())
+            if busy >= self._settings.job_workers + self._settings.jobs_waiting:
                 raise Problem(
                     429,
                     "too-many-jobs",

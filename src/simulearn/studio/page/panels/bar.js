@@ -87,8 +87,8 @@ export const Bar = {
         step("redo", state.history.future.at(-1), "redo", redo),
         narrow.value ? iconButton("library", t("common.library"), dialog("library"))
           : button(t("common.library"), dialog("library"), { glyph: "library", kind: "quiet" }),
-        h(Menu, { label: t("common.file"), glyph: "file", items: files(), iconOnly: narrow.value, end: true }),
-        h(Menu, { label: t("common.settings"), glyph: "settings", items: settings(), iconOnly: true, end: true }),
+        h(Menu, { label: t("common.file"), glyph: "file", items: files(), iconOnly: narrow.value }),
+        h(Menu, { label: t("common.settings"), glyph: "settings", items: settings(), iconOnly: true }),
         iconButton("help", t("common.help"), dialog("help"), { class: "icon-button wide-only" }),
       ]),
     ]);

@@ -37,13 +37,14 @@ function progress({ progress: frames, seconds: passed, state: now, lost }) {
   const [done, total] = frames ?? [0, FRAMES];
   return h("div", { class: "search-running" }, [
     h("div", {
-      class: ["progress", { waiting: !frames }], role: "progressbar", "aria-label": t("panels.checkRunning"),
+      class: ["progress", { waiting: !frames }], role: "progressbar", "aria-label": t("panels.check"),
       "aria-valuemin": 0, "aria-valuemax": total, "aria-valuenow": frames ? done : undefined,
     }, [h("span", { style: { width: `${(100 * done) / total}%` } })]),
     h("p", { class: "search-facts numbers" }, [
       h("span", now === "queued" ? t("panels.checkQueued") : t("panels.checkFrames", { done, total })),
       h("span", clock(passed)),
     ]),
+    now === "running" && h("p", { class: "note" }, t("panels.checkRunning")),
     lost && note("warning", t("panels.lost")),
     button(t("panels.checkCancel"), cancelCheck),
   ]);
@@ -61,6 +62,7 @@ function outcome(fea, distance) {
   const { reference, result } = fea;
   const bound = reference?.bound_mm ?? null;
   const quick = reference?.seconds;
+  const slow = result.seconds ?? fea.seconds;
   const inside = distance && bound !== null ? distance.mean <= bound : null;
   return [
     distance
@@ -81,10 +83,10 @@ function outcome(fea, distance) {
       [t("panels.stable"), t(result.stable ? "panels.yes" : "panels.no")],
       [t("panels.snaps"), snapWords(result.snaps)],
       quick && [t("panels.timeModel"), seconds(quick)],
-      [t("panels.timeFea"), seconds(fea.seconds)],
+      [t("panels.timeFea"), seconds(slow)],
     ]),
-    quick && fea.seconds > quick && h("p", { class: "note" },
-      t("panels.faster", { times: times(fea.seconds / quick) })),
+    quick && slow > quick && h("p", { class: "note" },
+      t("panels.faster", { times: times(slow / quick) })),
     result.stable === false && note("warning", t("panels.notStable")),
     h("div", { class: "toggles" }, [
       toggle(t("panels.overlay"), view.overlay, (on) => { view.overlay = on; }),

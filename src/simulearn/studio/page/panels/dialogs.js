@@ -91,7 +91,8 @@ const Notice = {
     onBeforeUnmount(stop);
     return () => {
       const { id, text, action } = props.notice;
-      return h("div", { class: "notice", onPointerenter: stop, onPointerleave: start, onFocusin: stop, onFocusout: start }, [
+      const pause = { onPointerenter: stop, onPointerleave: start, onFocusin: stop, onFocusout: start };
+      return h("div", { class: "notice", ...pause }, [
         h("p", text),
         action && button(action.label, () => {
           dismiss(id);

@@ -23,7 +23,9 @@ export const NumberField = {
     const id = useId();
     const text = ref(null); // while it is edited
     const error = ref("");
-    const shown = () => (props.value === null ? "" : editableNumber(props.value, view.language, props.digits));
+    const shown = () => (
+      props.value === null ? "" : editableNumber(props.value, view.language, props.digits)
+    );
     const wrong = (value) => {
       if (value === null) return t("common.notNumber");
       const outside = value < props.least || value > props.most;

@@ -11,13 +11,13 @@ const KEYS = {
   plan: [
     ["V", "select"], ["D", "draw"], ["S", "split"], ["X", "fix"], ["+ −", "ratio"], ["0 1 2 3 4", "quarters"],
     ["B", "flip"], ["↑ ↓ ← →", "nudge"], ["Shift", "nudgeMore"], ["Alt", "nudgeLess"],
-    ["Ctrl ↑ ↓ ← →", "focus"], ["M", "mirrorX"], ["Shift M", "mirrorY"], ["R", "rotate"], ["Delete", "delete"],
-    ["Ctrl A", "all"], ["Ctrl C", "copy"], ["Ctrl V", "paste"], ["Ctrl D", "duplicate"], ["Shift F10", "menu"],
-    ["F", "fit"],
+    ["Ctrl ↑ ↓ ← →", "focus"], ["M", "mirrorX"], ["Shift M", "mirrorY"], ["R", "rotate"],
+    ["Delete", "delete"], ["Ctrl A", "all"], ["Ctrl C", "copy"], ["Ctrl V", "paste"], ["Ctrl D", "duplicate"],
+    ["Shift F10", "menu"], ["F", "fit"],
   ],
   shape: [
-    ["↑ ↓ ← →", "orbit"], ["Shift ↑ ↓ ← →", "pan"], ["+ −", "zoom"], ["F", "fit"], ["0", "home"], ["7", "top"],
-    ["1", "front"], ["3", "sideways"], ["5", "projection"],
+    ["↑ ↓ ← →", "orbit"], ["Shift ↑ ↓ ← →", "pan"], ["+ −", "zoom"], ["F", "fit"], ["0", "home"],
+    ["7", "top"], ["1", "front"], ["3", "sideways"], ["5", "projection"],
   ],
   parts: [
     ["↑ ↓", "listMove"], ["Space", "listSelect"], ["Ctrl Space", "listToggle"], ["Shift ↑ ↓", "listRange"],

@@ -30,7 +30,10 @@ const keyOf = (kind, number) => `${kind} ${number}`;
 
 /** One part; renders again only where something of it changes. */
 const Row = {
-  props: { id: String, name: String, detail: String, level: String, message: String, selected: Boolean, focusable: Boolean },
+  props: {
+    id: String, name: String, detail: String, level: String, message: String,
+    selected: Boolean, focusable: Boolean,
+  },
   setup: (props) => () => h("div", {
     class: "part", role: "option", "data-part": props.id, "aria-selected": String(props.selected),
     "aria-label": [props.name, props.detail, props.message].filter(Boolean).join(", "),
@@ -42,6 +45,8 @@ const Row = {
     h("span", { class: "part-detail" }, props.detail),
   ]),
 };
+
+const group = (name, rows) => h("div", { role: "group", "aria-label": name }, rows);
 
 export const Outline = {
   setup() {
@@ -90,7 +95,8 @@ export const Outline = {
       if (!key) return;
       const at = keys.value.indexOf(key);
       const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: keys.value.length - 1 }[event.key];
-      const beams = key.startsWith("beams") && !isSelected(...partOf(key)) ? [partOf(key)[1]] : state.selection.beams;
+      const [kind, number] = partOf(key);
+      const parts = isSelected(kind, number) ? state.selection : { joints: [], beams: [], [kind]: [number] };
       const direction = { "+": 1, "-": -1 }[event.key];
       if (to !== undefined) {
         const next = keys.value[Math.min(keys.value.length - 1, Math.max(0, to))];
@@ -99,14 +105,13 @@ export const Outline = {
       } else if (event.key === " " || event.key === "Enter") {
         choose(key, event);
       } else if (event.key === "a" && (event.ctrlKey || event.metaKey)) {
-        const parts = state.document.grid;
-        select({ joints: parts.joints.map((_, k) => k), beams: parts.beams.map((_, b) => b) });
-      } else if (direction && beams.length) {
-        edit((document) => stepActuators(document, beams, direction), { label: t("common.didRatios", { n: beams.length }) });
+        const { joints, beams } = state.document.grid;
+        select({ joints: joints.map((_, k) => k), beams: beams.map((_, b) => b) });
+      } else if (direction) {
+        const label = t("common.didRatios", { n: parts.beams.length });
+        edit((document) => stepActuators(document, parts.beams, direction), { label });
       } else if (event.key === "Delete" || event.key === "Backspace") {
-        const [kind, number] = partOf(key);
-        const parts = isSelected(kind, number) ? state.selection : { [kind]: [number] };
-        edit((document) => removeParts(document, parts), { label: t("common.didDelete", { count: "" }) });
+        edit((document) => removeParts(document, parts), { label: t("common.didDelete") });
         select({});
         nextTick(() => move(keys.value[Math.min(at, keys.value.length - 1)] ?? null));
       } else {
@@ -128,8 +133,8 @@ export const Outline = {
     });
     // What is selected elsewhere comes into view here.
     watch(() => state.selection, ({ joints, beams }) => {
-      const key = joints.length ? keyOf("joints", joints.at(-1)) : beams.length ? keyOf("beams", beams.at(-1)) : null;
-      if (!key || root.value?.contains(globalThis.document.activeElement)) return;
+      const key = keyOf(...(joints.length ? ["joints", joints.at(-1)] : ["beams", beams.at(-1)]));
+      if (!keys.value.includes(key) || root.value?.contains(globalThis.document.activeElement)) return;
       focused.value = key;
       nextTick(() => reveal(root.value?.parentElement, element(key)));
     }, { immediate: true });
@@ -140,7 +145,7 @@ export const Outline = {
       const { name, detail } = words(grid.value, number);
       return h(Row, {
         key, id: key, name, detail,
-        level: messages.length ? (messages.some((one) => one.kind === "error") ? "error" : "warning") : undefined,
+        level: messages.some((one) => one.kind === "error") ? "error" : messages[0]?.kind,
         message: messages.map(({ message }) => message).join("; ") || undefined,
         selected: isSelected(kind, number),
         focusable: key === (keys.value.includes(focused.value) ? focused.value : keys.value[0]),
@@ -151,7 +156,8 @@ export const Outline = {
       return h("section", { class: "outline", "aria-label": t("common.parts") }, [
         h("h2", t("common.parts")),
         h("div", {
-          class: "parts", ref: root, role: "listbox", "aria-multiselectable": "true", "aria-label": t("common.parts"),
+          class: "parts", ref: root,
+          role: "listbox", "aria-multiselectable": "true", "aria-label": t("common.parts"),
           onClick: (event) => rowAt(event) && choose(rowAt(event), event),
           onKeydown,
           onFocusin: (event) => { state.hover = rowAt(event) ? hoverOf(rowAt(event)) : null; },
@@ -159,8 +165,8 @@ export const Outline = {
           onPointerover: (event) => { state.hover = rowAt(event) ? hoverOf(rowAt(event)) : null; },
           onPointerleave: () => { state.hover = null; },
         }, [
-          h("div", { role: "group", "aria-label": t("common.joints") }, joints.map(row("joints", jointWords))),
-          h("div", { role: "group", "aria-label": t("common.beams") }, beams.map(row("beams", beamWords))),
+          group(t("common.joints"), joints.map(row("joints", jointWords))),
+          group(t("common.beams"), beams.map(row("beams", beamWords))),
         ]),
       ]);
     };

@@ -1,6 +1,7 @@
 // The tab "Print": on which printer, what the print takes, its layers, and the file to download.
 
 import { h, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
+import { sizeOf } from "../service/beads.js";
 import { clock, grams, metres, number } from "../service/format.js";
 import { askPrint, downloadGcode, dropPrint, freshPrint } from "../service/printing.js";
 import { printers } from "../service/api.js";
@@ -42,14 +43,13 @@ function choice() {
 }
 
 function printFacts({ facts: found, toolpath }) {
-  const [[left, front], [right, back]] = found.bounds_mm;
-  const top = toolpath.layers.at(-1).z;
+  const [width, depth, height] = sizeOf(toolpath);
   return facts([
-    [t("panels.printTime"), h("span", { title: t("panels.heating", { clock: clock(found.heating_seconds) }) },
-      clock(found.seconds))],
+    [t("panels.printTime"), clock(found.seconds)],
+    [t("panels.heating"), clock(found.heating_seconds)],
     [t("panels.filament"), `${metres(found.filament_mm)}, ${grams(found.filament_g)}`],
     [t("panels.layersCount"), number(found.layers)],
-    [t("panels.printSize"), `${number(right - left)} × ${number(back - front)} × ${number(top, 1)} mm`],
+    [t("panels.printSize"), `${number(width)} × ${number(depth)} × ${number(height, 1)} mm`],
   ]);
 }
 
@@ -97,6 +97,7 @@ export const Print = {
       const old = !freshPrint();
       return h("div", { class: "panel" }, [
         h("section", { class: "part-section", "aria-label": t("panels.print") }, [
+          h(Read),
           choice(),
           !print && h("p", { class: "note" }, t("panels.printEmpty")),
           print?.state === "failed" && problemNote(t("panels.printFailed"), print.problem),
@@ -105,7 +106,6 @@ export const Print = {
         ]),
         print?.toolpath && h(Layers, { old }),
         print?.facts && h("section", { class: "part-section", "aria-label": t("panels.download") }, [h(Download)]),
-        h(Read),
       ]);
     };
   },

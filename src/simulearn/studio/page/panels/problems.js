@@ -29,7 +29,8 @@ function entry(kind, message, i, offered) {
       somewhere
         ? h("button", {
           type: "button", class: "message-text", title: t("common.showPlace"),
-          onClick: () => select(parts), onFocus: show, onBlur: hide, onPointerenter: show, onPointerleave: hide,
+          onClick: () => select(parts),
+          onFocus: show, onBlur: hide, onPointerenter: show, onPointerleave: hide,
         }, message.message)
         : h("p", { class: "message-text" }, message.message),
       first && button(label, () => edit(mend.apply, { label }), { kind: "small" }),
@@ -42,6 +43,7 @@ function messageList(kind) {
   return {
     setup() {
       const all = ref(false);
+      const showAll = () => { all.value = true; };
       return () => {
         const messages = state.check?.[`${kind}s`] ?? [];
         if (messages.length === 0) return null;
@@ -51,7 +53,7 @@ function messageList(kind) {
         return h("section", { class: ["problems", kind], "aria-label": t(`common.${kind}s`) }, [
           h("h2", t(n === 1 ? `common.${kind}Count` : `common.${kind}sCount`, { n })),
           h("ul", { class: "messages" }, shown.map((message, i) => entry(kind, message, i, offered))),
-          shown.length < n && button(t("common.showAll", { n }), () => { all.value = true; }, { kind: "quiet small" }),
+          shown.length < n && button(t("common.showAll", { n }), showAll, { kind: "quiet small" }),
         ]);
       };
     },

@@ -14,7 +14,8 @@ function sentence() {
   const errors = state.check?.errors.length ?? 0;
   if (state.document.grid.beams.length === 0) return t("common.empty");
   if (errors) return t(errors === 1 ? "common.errorOne" : "common.errorMany", { n: errors });
-  if (!state.answer || stale.value) return t(state.connection === "offline" ? "common.noAnswer" : "common.updating");
+  if (!state.answer || stale.value)
+    return t(state.connection === "offline" ? "common.noAnswer" : "common.updating");
   const { result } = state.answer;
   const size = formatNumber(Math.abs(result.rise_mm), view.language);
   return t(result.rise_mm < 0 ? "common.sinks" : "common.rises", { mm: size });
@@ -35,7 +36,8 @@ export function savingState() {
   const run = { failed: saveNow, offline: saveNow, conflict: showConflict }[state.saving];
   if (!run) return h("span", { class: "saving" }, text);
   return h("button", {
-    type: "button", class: ["saving", state.saving], title: t(`common.savingDo_${state.saving}`), onClick: run,
+    type: "button", class: ["saving", state.saving], onClick: run,
+    title: t(`common.savingDo_${state.saving}`),
   }, text);
 }
 

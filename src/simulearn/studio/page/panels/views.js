@@ -76,13 +76,14 @@ export const Views = {
       },
       onPointermove: drag, onPointerup: drop, onDblclick: () => { view.share = 0.5; }, onKeydown: key,
     });
+    const closeTip = () => { view.tip = false; };
     return () => h("main", { class: "main" }, [
       h("h1", { class: "hidden" }, t("common.studio")),
       state.server && !state.server.ready && h("p", { class: "tip", role: "status" }, t("common.preparing")),
       narrow.value && h(PaneSwitch),
       view.tip && h("div", { class: "tip" }, [
         h("p", t("common.tip")),
-        iconButton("close", t("common.tipClose"), () => { view.tip = false; }, { class: "icon-button small" }),
+        iconButton("close", t("common.tipClose"), closeTip, { class: "icon-button small" }),
       ]),
       h("div", {
         class: ["views", pane.value], ref: root,

@@ -18,6 +18,22 @@ export function lengthsOf(path, layer) {
   return lengths;
 }
 
+/** Return the size of what is printed, without the skirt: [width, depth, height] in mm. */
+export function sizeOf(path) {
+  const low = [Infinity, Infinity];
+  const high = [-Infinity, -Infinity];
+  path.role.forEach((role, b) => {
+    if (path.roles[role] === "skirt") return;
+    for (let p = path.starts[b]; p < path.starts[b + 1]; p += 1) {
+      path.points[p].forEach((value, axis) => {
+        low[axis] = Math.min(low[axis], value - path.width[p] / 2);
+        high[axis] = Math.max(high[axis], value + path.width[p] / 2);
+      });
+    }
+  });
+  return [high[0] - low[0], high[1] - low[1], path.layers.at(-1).z];
+}
+
 /** Return a file name made of a design's name: letters, digits, dashes. */
 export function fileName(name) {
   const plain = name.normalize("NFKD").replace(/\p{Mark}/gu, "").replace(/[^A-Za-z0-9]+/g, "-");

@@ -23,10 +23,7 @@ export async function open(file) {
   try {
     found = await openFile(file);
   } catch (problem) {
-    state.dialog = {
-      name: "message", title: t("common.openFailed", { file: file.name }), text: problem.message,
-      messages: problem.errors ?? [],
-    };
+    refuse(file, problem);
     return;
   }
   const { grid, goals = [], name, messages = [], printer } = found;
@@ -35,15 +32,19 @@ export async function open(file) {
     const { schema } = emptyDocument();
     document = readDocument({ schema, name, grid, goals, printer: printer || state.document.printer });
   } catch (error) {
-    state.dialog = { name: "message", title: t("common.openFailed", { file: file.name }), text: error.message };
+    refuse(file, error);
     return;
   }
   place(document, t("common.didOpen", { file: file.name }));
   if (messages.length) {
-    state.dialog = {
-      name: "message", title: t("common.openNotes", { file: file.name }), text: t("common.openMended"), messages,
-    };
+    const title = t("common.openNotes", { file: file.name });
+    state.dialog = { name: "message", title, text: t("common.openMended"), messages };
   }
+}
+
+function refuse(file, { message, errors = [] }) {
+  const title = t("common.openFailed", { file: file.name });
+  state.dialog = { name: "message", title, text: message, messages: errors };
 }
 
 /** Show another design in place of the current one; undo brings that back. */

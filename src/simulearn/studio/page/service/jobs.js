@@ -12,22 +12,22 @@ const AGAIN = [1000, 2000, 4000]; // ms until the next try without a connection;
 const BUSY = 3; // times that a server too busy to begin a job is asked again
 const MOST_STEPS = 1000; // in one answer of the server
 
-const wait = (ms) => new Promise((resolve) => { setTimeout(resolve, ms); });
+const sleep = (ms) => new Promise((resolve) => { setTimeout(resolve, ms); });
 const final = (state) => ["done", "failed", "cancelled"].includes(state);
 
 /** Begin a job and follow it to its end.
  *
  * begin() asks the server for it. report({state, progress, steps, seconds, lost}) is called after each
- * answer; steps are all so far; lost: whether the server does not answer at the moment.
+ * answer; steps are all so far; lost: whether the server does not answer at the moment. wait(ms): pauses.
  * Returns {cancel, finished}: a promise of the last answer; it throws a Problem if the job failed.
  */
-export function runJob(begin, report = () => {}) {
+export function runJob(begin, report = () => {}, wait = sleep) {
   const wish = { cancel: false };
-  return { cancel: () => { wish.cancel = true; }, finished: follow(begin, report, wish) };
+  return { cancel: () => { wish.cancel = true; }, finished: follow(begin, report, wish, wait) };
 }
 
-async function follow(begin, report, wish) {
-  const id = await begun(begin, wish);
+async function follow(begin, report, wish, wait) {
+  const id = await begun(begin, wish, wait);
   if (id === null) return { state: "cancelled", steps: [], result: null };
   let steps = [];
   let last = { state: "queued", progress: null, seconds: 0 };
@@ -59,7 +59,7 @@ async function follow(begin, report, wish) {
 }
 
 /** Return the name of a new job, or null if it was cancelled before the server took it. */
-async function begun(begin, wish) {
+async function begun(begin, wish, wait) {
   for (let tries = 0; ; tries += 1) {
     if (wish.cancel) return null;
     try {
