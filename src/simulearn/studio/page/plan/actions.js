@@ -2,7 +2,8 @@
 
 import { splitBeam } from "../document/drawing.js";
 import {
-  copyParts, flipActuators, jointsOf, mirror, moveJoints, pasteParts, removeParts, rotate, setActuators, stepActuators,
+  copyParts, flipActuators, jointsOf, mirror, moveJoints, pasteParts, removeParts, rotate, setActuators,
+  stepActuators,
 } from "../document/edit.js";
 import { bounds } from "../document/measure.js";
 import { edit, endMerge, redo, select, state, undo } from "../store.js";
@@ -147,7 +148,8 @@ export function ratioText(ratio) {
 export function nudge(by) {
   if (!hasSelection()) return;
   const numbers = jointsOf(state.document.grid, state.selection);
-  edit((document) => moveJoints(document, numbers, by), { label: t("plan.editMoveJoints"), merge: `plan-nudge-${numbers}` });
+  const merge = `plan-nudge-${numbers}`;
+  edit((document) => moveJoints(document, numbers, by), { label: t("plan.editMoveJoints"), merge });
   endAfterPause();
   const [x, y] = state.document.grid.joints[numbers[0]];
   announce(t("plan.saidNudged", { joint: numbers[0], x: shown(x), y: shown(y) }));

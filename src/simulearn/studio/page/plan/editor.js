@@ -105,7 +105,7 @@ export function clearMarks() {
 export async function focusPart(part) {
   editor.focus = part;
   await nextTick();
-  const selector = part && (part.joint !== undefined ? `[data-joint="${part.joint}"]` : `[data-beam="${part.beam}"]`);
-  const target = (part && element?.querySelector(`[role=option]${selector}`)) || element;
+  const selector = part?.joint !== undefined ? `[data-joint="${part.joint}"]` : `[data-beam="${part?.beam}"]`;
+  const target = element?.querySelector(`[role=option]${selector}`) ?? element;
   target?.focus({ preventScroll: true });
 }

@@ -1,13 +1,13 @@
 // The plan: the flat grid seen from above, where it is drawn and changed.
 
 import { h, onBeforeUnmount, onMounted, watch } from "/libraries/vue.js";
-import { state } from "../store.js";
+import { select, state } from "../store.js";
 import { t } from "../text/text.js";
 import {
   copySelection, duplicateSelection, flipBeams, mirrorSelection, moveFocus, nudge, paste, redoLast,
   removeSelection, rotateSelection, selectAll, setBeams, stepBeams, undoLast, useTool, hasSelection,
 } from "./actions.js";
-import { anyVisible, sizeScale, toPlan, toScreen } from "./camera.js";
+import { anyVisible, pan, sizeScale, toPlan, toScreen } from "./camera.js";
 import { beamWidth, clearMarks, editor, fitAll, reach, setElement } from "./editor.js";
 import { direction, placeOf, tabStop } from "./focus.js";
 import { Grid, ScaleBar } from "./grid.js";
@@ -22,7 +22,6 @@ import { Popover } from "./popover.js";
 import { Readout } from "./readout.js";
 import { Toolbar, Zooms } from "./toolbar.js";
 import { currentTool, TOOLS } from "./tools/tools.js";
-import { select } from "../store.js";
 
 export const Plan = {
   setup() {
@@ -72,7 +71,8 @@ export const Plan = {
         return true;
       }
       const inButton = event.target.closest?.("button");
-      if (!(inButton && (event.key === "Enter" || event.key === "Tab")) && currentTool().key(event)) return true;
+      const pressesButton = inButton && (event.key === "Enter" || event.key === "Tab");
+      if (!pressesButton && currentTool().key(event)) return true;
       if (event.key === "Enter" && svg.contains(event.target)) return pick(event);
       const name = command(event);
       if (!name || (inButton && (name === "arrow" || name === "focus"))) return false;
@@ -173,7 +173,7 @@ function resize(width, height) {
   editor.size = { width, height };
   if (editor.pressed) return; // what the hand holds stays under it
   if (editor.fitted) fitAll();
-  else editor.camera = { ...camera, x: camera.x + (width - size.width) / 2, y: camera.y + (height - size.height) / 2 };
+  else editor.camera = pan(camera, [(width - size.width) / 2, (height - size.height) / 2]);
 }
 
 /** Show all of a document that is new, or of which nothing would be seen. */
@@ -203,14 +203,17 @@ const World = {
 const Empty = {
   render() {
     if (state.document.grid.joints.length || editor.line?.fixed) return null;
-    return h("div", { class: "plan-empty" }, [h("strong", t("plan.emptyTitle")), h("span", t("plan.emptyHint"))]);
+    return h("div", { class: "plan-empty" }, [
+      h("strong", t("plan.emptyTitle")), h("span", t("plan.emptyHint")),
+    ]);
   },
 };
 
 /** What the tool in use expects; while a line is drawn also a button that ends it, for fingers. */
 const Hint = {
   render() {
-    const name = state.tool === "draw" && !editor.line?.fixed ? "DrawStart" : state.tool[0].toUpperCase() + state.tool.slice(1);
+    const { tool } = state;
+    const name = tool === "draw" && !editor.line?.fixed ? "DrawStart" : tool[0].toUpperCase() + tool.slice(1);
     if (state.tool === "select" && state.selection.beams.length === 0) return null;
     return h("div", { class: "plan-hint" }, [
       h("span", t(`plan.hint${name}`)),
