@@ -22,10 +22,8 @@ const ZOOM = 1.4; // of one press on + or - of the zoom
 let clip = null; // what was copied
 let pause = 0;
 
-/** Change to a tool; what the one before has begun is ended. */
+/** Change to a tool; a line that is being drawn ends. */
 export function useTool(name) {
-  if (state.tool === "draw" && name !== "draw") currentTool().finish();
-  else currentTool().cancel();
   state.tool = name;
   editor.popover = null;
 }

@@ -13,15 +13,17 @@ export const Under = {
     const width = beamWidth();
     if (part?.beam !== undefined && grid.beams[part.beam]) {
       const [p, q] = grid.beams[part.beam].map((k) => grid.joints[k]);
-      return h("g", { class: "plan-hover", style: { "--wide": width } }, h("path", { d: `M${p}L${q}` }));
+      return halo(h("path", { d: `M${p}L${q}`, style: { "--wide": width } }));
     }
     if (part?.joint !== undefined && grid.joints[part.joint]) {
       const [x, y] = grid.joints[part.joint];
-      return h("g", { class: "plan-hover" }, h("circle", { cx: x, cy: y }));
+      return halo(h("circle", { cx: x, cy: y }));
     }
     return h("g");
   },
 };
+
+const halo = (mark) => h("g", { class: "plan-hover", "aria-hidden": "true" }, mark);
 
 /** What lies above the parts. */
 export const Over = {

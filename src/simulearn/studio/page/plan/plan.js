@@ -27,7 +27,7 @@ export const Plan = {
   setup() {
     let section = null;
     let svg = null;
-    let space = false; // whether the space bar is down, to move the plan
+    let space = null; // { used } while the space bar is down: whether it moved the plan
     const ends = [];
 
     onMounted(() => {
@@ -36,11 +36,15 @@ export const Plan = {
       sized.observe(svg);
       ends.push(
         () => sized.disconnect(),
-        listen(svg, { openMenu, isSpaceDown: () => space }),
+        listen(svg, { openMenu, isSpaceDown: useSpace }),
         listenKeys(section, react),
       );
-      const released = ({ code }) => {
-        if (code === "Space") setSpace(false);
+      const released = (event) => {
+        if (event.code !== "Space" || !space) return;
+        const { used } = space;
+        space = null;
+        editor.grab = false;
+        if (!used && svg.contains(event.target)) pick(event);
       };
       document.addEventListener("keyup", released);
       ends.push(() => document.removeEventListener("keyup", released));
@@ -51,15 +55,17 @@ export const Plan = {
     });
 
     watch(() => state.tool, (now, before) => {
-      TOOLS[before]?.cancel();
+      if (before === "draw") TOOLS.draw.finish();
+      else TOOLS[before]?.cancel();
       currentTool().enter?.();
       state.hover = null;
     });
     watch(() => state.document, fitNew);
 
-    function setSpace(down) {
-      space = down;
-      svg.classList.toggle("grab", down);
+    /** Return whether the space bar is down; then it does not select when it is released. */
+    function useSpace() {
+      if (space) space.used = true;
+      return space !== null;
     }
 
     /** Run what a key stands for; return whether it was used. */
@@ -67,7 +73,8 @@ export const Plan = {
       editor.keys = true;
       const onPart = svg.contains(event.target) || event.target === document.body;
       if (event.key === " " && onPart) {
-        if (!event.repeat) setSpace(true);
+        space ??= { used: false };
+        editor.grab = true;
         return true;
       }
       const inButton = event.target.closest?.("button");
@@ -96,7 +103,9 @@ export const Plan = {
 
     const onContextmenu = (event) => {
       event.preventDefault();
-      if (event.button !== 2 || event.pointerType === "touch") return; // keys and fingers open it elsewhere
+      // Keys and fingers open the menu elsewhere.
+      if (event.pointerType ? event.pointerType !== "mouse" : event.button !== 2) return;
+      if (state.tool === "draw" && editor.line?.fixed) return currentTool().finish();
       const { left, top } = svg.getBoundingClientRect();
       const screen = [event.clientX - left, event.clientY - top];
       const point = toPlan(editor.camera, screen);
@@ -133,9 +142,8 @@ export const Plan = {
       },
     }, [
       h("svg", {
-        class: ["plan-canvas", { panning: editor.panning, dragging: editor.dragging }],
-        role: "listbox", "aria-multiselectable": "true", "aria-label": t("plan.parts"),
-        tabindex: state.document.grid.joints.length ? -1 : 0, onContextmenu, onFocusin,
+        class: ["plan-canvas", { grab: editor.grab, panning: editor.panning, dragging: editor.dragging }],
+        ...list(), "aria-label": t("plan.parts"), onContextmenu, onFocusin,
         ref: (el) => {
           svg = el;
         },
@@ -144,6 +152,12 @@ export const Plan = {
     ]);
   },
 };
+
+/** The plan is a list of joints and beams to choose from; without any it is but a place to draw in. */
+function list() {
+  if (state.document.grid.joints.length === 0) return { role: "group", tabindex: 0 };
+  return { role: "listbox", "aria-multiselectable": "true", tabindex: -1 };
+}
 
 const COMMANDS = {
   select: () => useTool("select"),

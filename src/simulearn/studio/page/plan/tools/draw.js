@@ -60,6 +60,8 @@ export const draw = {
     if (key === "Enter") return enter();
     if (key === "Escape") return escape();
     if (key === "Backspace" && line.points.length) return change(backspace(line));
+    const undoes = key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !event.shiftKey;
+    if (undoes && line.points.length) return change({ ...emptyLine(), points: line.points.slice(0, -1) });
     if (key === "Tab" && line.points.length && !event.shiftKey) return change(toggleField(line));
     if (key.length !== 1 || event.ctrlKey || event.metaKey || event.altKey) return false;
     const next = type(line, key);
