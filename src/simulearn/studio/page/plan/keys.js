@@ -13,6 +13,8 @@ const FIELDS = [
   "input", "textarea", "select", "[contenteditable='']", "[contenteditable=true]", "dialog", "[role=dialog]",
   "[role=menu]",
 ].join();
+// Buttons outside the plan that have keys of their own.
+const GROUPS = ["[role=tablist]", "[role=radiogroup]", "[role=listbox]", ".shape"].join();
 
 /** Return the command of a key event, or null. */
 export function command({ key, ctrlKey, metaKey, shiftKey, altKey }) {
@@ -35,10 +37,14 @@ export function nudgeStep({ shiftKey, altKey }) {
   return shiftKey ? 10 : 1;
 }
 
-/** Return whether a key pressed at an element is meant for something else than the plan. */
+/** Return whether a key pressed at an element is meant for something else than the plan.
+ *
+ * A button that was clicked keeps the focus; keys that it has no use for go to the plan.
+ */
 export function isElsewhere(target, plan) {
   if (target.closest?.(FIELDS)) return true;
-  return target !== document.body && target !== document.documentElement && !plan.contains(target);
+  if (target === document.body || target === document.documentElement || plan.contains(target)) return false;
+  return !target.closest?.("button") || target.closest(GROUPS) !== null;
 }
 
 /** Listen to keys that are meant for `plan`; returns a function that ends this.
