@@ -47,12 +47,15 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/snaps.py --designs 20
 	$(ONE_THREAD) $(BIN)/python benchmarks/curve.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/inverse.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/studio.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/studio_users.py
 
-# The pictures of README.md.
+# The pictures of README.md and docs/studio.md.
 pictures: $(VENV)/ready
 	mkdir -p docs/pictures
 	$(BIN)/simulearn simulate examples/twist.json -o docs/pictures/twist.gif
 	$(BIN)/simulearn simulate examples/random.json -o docs/pictures/random.png
+	$(BIN)/python benchmarks/studio_pictures.py
 
 clean:
 	rm -rf .venv .venv-* out
