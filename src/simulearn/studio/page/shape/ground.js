@@ -22,11 +22,11 @@ void main() {
 }`;
 
 const SHADOW_FRAGMENT = `
-uniform float strength;
+uniform vec3 shade;
 varying float vOver;
 void main() {
   if (vOver < 0.0) discard;
-  gl_FragColor = vec4(0.0, 0.0, 0.0, strength);
+  gl_FragColor = vec4(shade, 1.0);
 }`;
 
 /** Create the ground of a scene. */
@@ -35,10 +35,11 @@ export function createGround() {
   const lineMaterial = new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
   const lines = new THREE.LineSegments(new THREE.BufferGeometry(), lineMaterial);
   lines.renderOrder = 1;
-  // Every point of the plane is darkened once: the first fragment keeps the later ones out by depth.
+  // The darker of the shadow and what is there: parts over one another darken the ground once.
   const shadowMaterial = new THREE.ShaderMaterial({
-    vertexShader: SHADOW_VERTEX, fragmentShader: SHADOW_FRAGMENT, transparent: true, depthFunc: THREE.LessDepth,
-    side: THREE.DoubleSide, uniforms: { height: { value: 0 }, strength: { value: SHADOW.light } },
+    vertexShader: SHADOW_VERTEX, fragmentShader: SHADOW_FRAGMENT, transparent: true, depthWrite: false,
+    blending: THREE.CustomBlending, blendEquation: THREE.MinEquation, side: THREE.DoubleSide,
+    uniforms: { height: { value: 0 }, shade: { value: new THREE.Vector3() } },
   });
   const shadow = new THREE.Mesh(new THREE.BufferGeometry(), shadowMaterial);
   shadow.frustumCulled = false;
@@ -93,7 +94,8 @@ export function createGround() {
     setTheme(next) {
       theme = next;
       lineMaterial.color = plain([1, 1, 1]);
-      shadowMaterial.uniforms.strength.value = theme.dark ? SHADOW.dark : SHADOW.light;
+      const light = 1 - (theme.dark ? SHADOW.dark : SHADOW.light);
+      shadowMaterial.uniforms.shade.value.fromArray(theme.canvas.map((x) => x * light));
       if (bounds) build(bounds.low, bounds.high);
     },
     /** Draw what is dear, the shadow, or not. */

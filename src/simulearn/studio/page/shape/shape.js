@@ -167,7 +167,7 @@ export const Shape = {
     });
     const possible = (name) => hasValues(name, shown.value?.result, other.value);
     return () => h("section", { class: ["shape", { late: late.value }], "aria-label": t("shape.title"), onKeydown }, [
-      h("div", { class: "shape-view" }, [
+      h("div", { class: ["shape-view", { broken: broken.value }] }, [
         h("div", {
           class: "shape-canvas", ref: container, tabindex: 0, role: "application",
           "aria-label": t("shape.canvas"), "aria-describedby": "shape-keys",
