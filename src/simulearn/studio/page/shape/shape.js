@@ -49,7 +49,7 @@ export const Shape = {
     const goals = computed(() => state.tab === "goals");
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
-    let [triad, dimmer, reader, wanted] = [null, 0, 0, 0];
+    let [triad, dimmer, reader] = [null, 0, 0];
 
     const colour = () => {
       const by = hasValues(view.colour, shown.value?.result, other.value) ? view.colour : "actuator";
@@ -103,8 +103,10 @@ export const Shape = {
       watch(() => view.colour, colour);
       watch(() => view.ghost, (on) => viewer.value.setGhost(on));
       watch(() => view.ground, (on) => viewer.value.setGround(on), { immediate: true });
+      watch(() => view.dimensions, (on) => viewer.value.setRoomy(on), { immediate: true });
       watch(() => view.parallel, (on) => viewer.value.camera.setParallel(on), { immediate: true });
       watch(() => [state.selection, state.hover], marks);
+      watch(() => view.playing, (on) => viewer.value.setPlaying(on));
       watch(() => view.frame, (frame) => viewer.value.setFrame(frame), { flush: "sync" });
       watch(() => [
         view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value, state.pickVertex,
@@ -157,14 +159,15 @@ export const Shape = {
       else broken.value = "missing";
     });
     onBeforeUnmount(() => {
-      for (const timer of [dimmer, reader, wanted]) clearTimeout(timer);
+      clearTimeout(dimmer);
+      clearTimeout(reader);
       triad?.dispose();
       viewer.value?.dispose();
       viewer.value = null;
     });
     const possible = (name) => hasValues(name, shown.value?.result, other.value);
     return () => h("section", { class: ["shape", { late: late.value }], "aria-label": t("shape.title"), onKeydown }, [
-      h("div", { class: "shape-view" }, [
+      h("div", { class: ["shape-view", { broken: broken.value }] }, [
         h("div", {
           class: "shape-canvas", ref: container, tabindex: 0, role: "application",
           "aria-label": t("shape.canvas"), "aria-describedby": "shape-keys",
@@ -181,7 +184,9 @@ export const Shape = {
         !broken.value && !printing.value && h(Summary, {
           result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value, invalid: errors.value,
         }),
-        !broken.value && (shown.value || printing.value) && h(Toolbar, { run: (name) => viewer.value.command(name) }),
+        !broken.value && (shown.value || printing.value) && h(Toolbar, {
+          run: (name) => viewer.value.command(name), printing: printing.value,
+        }),
         !broken.value && shown.value && !printing.value && h(Legend, {
           ...coloured.value, possible, distance: distance.value,
         }),

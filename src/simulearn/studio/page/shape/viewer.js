@@ -10,12 +10,15 @@ import { pick } from "./picking.js";
 import { createPrint } from "./print.js";
 import { createStage } from "./stage.js";
 import { readTheme, watchTheme } from "./theme.js";
-import { boundsOf, LAST } from "./topology.js";
+import { boundsOf, cornersOf } from "./topology.js";
 
 export { canDraw } from "./stage.js";
 
+const COARSE = 8; // mm between the stations of a shape that lies over the shown one
 const CLICK = 5; // px that a press may move and still be no drag
 const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
+const FITTED = [0, 4, 8, 11]; // frames that are brought into view
+const ROOM = { narrow: 1.2, wide: 1.42 }; // around the shape; wide where dimensions stand beside it
 const TURN = Math.PI / 24; // of an arrow key
 const ZOOM = 1.15; // of + and -
 
@@ -24,6 +27,8 @@ export const KEYS = {
   Home: "fit", f: "fit", F: "fit", 7: "top", 1: "front", 3: "side", 0: "home", 5: "projection",
 };
 
+const passive = (grid) => grid && { ...grid, actuators: [] };
+
 /** Create a viewer in a container.
  *
  * events: onHover(part | null), onPress(part | null, event), onCamera(state), onLost(), onRestored().
@@ -31,9 +36,12 @@ export const KEYS = {
  */
 export function createViewer(container, { events = {}, still = () => false } = {}) {
   let [theme, pointer, hovering, pressed, fitted, disposed] = [readTheme(container), null, 0, null, null, false];
-  let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh] = [null, null, [], null, false, true, true];
+  let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh, roomy] = [null, null, [], null, false, true, true, false];
   const stage = createStage(container, {
     before: drawNotes,
+    onPace: (plain) => {
+      for (const part of [body, ground]) part.setPlain(plain);
+    },
     onLost: () => events.onLost?.(),
     onRestored: () => events.onRestored?.(),
   });
@@ -46,9 +54,9 @@ export function createViewer(container, { events = {}, still = () => false } = {
     still,
   });
   const body = createBody();
-  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong" });
+  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong", spacing: Infinity });
   ghost.setFrame(0);
-  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target" });
+  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target", spacing: COARSE });
   const ground = createGround();
   const print = createPrint();
   const annotations = createAnnotations(container);
@@ -116,13 +124,14 @@ export function createViewer(container, { events = {}, still = () => false } = {
     theme = readTheme(container);
     stage.scene.background = new THREE.Color().setRGB(...theme.canvas, THREE.LinearSRGBColorSpace);
     for (const part of parts) part.setTheme(theme);
-    stage.invalidate();
+    stage.invalidate({ still: true });
   };
   const endTheme = watchTheme(() => requestAnimationFrame(() => !disposed && applyTheme()));
   const observer = new ResizeObserver(([entry]) => {
     const { width, height } = entry.contentRect;
     if (width === 0 || height === 0) return;
     stage.resize(width, height);
+    body.setSize(width, height);
     camera.resize(width, height);
     if (!camera.touched) viewer.fit({ view: fresh ? "home" : null, animate: false });
   });
@@ -130,11 +139,6 @@ export function createViewer(container, { events = {}, still = () => false } = {
   applyTheme();
   stage.setCamera(camera.camera);
 
-  const boxPoints = () => {
-    if (!body.shown) return [];
-    const { low, high } = boundsOf(body.shown.result, 0, LAST);
-    return [low, high].flatMap(([x]) => [low, high].flatMap(([, y]) => [low, high].map(([, , z]) => [x, y, z])));
-  };
   const sizeOf = ({ low, high }) => Math.hypot(...high.map((x, axis) => x - low[axis]));
   const grown = (bounds) => {
     const ratio = sizeOf(bounds) / sizeOf(fitted);
@@ -149,7 +153,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
     /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
     show(result, grid = null) {
       body.show(result, grid);
-      ghost.show(ghostShown ? result : null, grid);
+      ghost.show(ghostShown ? result : null, passive(grid));
       if (result) {
         ground.place(boundsOf(result, 0, 0), body.mesh);
         const bounds = boundsOf(result);
@@ -168,14 +172,21 @@ export function createViewer(container, { events = {}, still = () => false } = {
       ghost.group.visible = ghostShown && Boolean(body.shown) && !printing && frame > 0.02;
       stage.invalidate();
     },
+    /** Say whether frame will follow frame. */
+    setPlaying: (on) => stage.hold(on),
     setColour(by, reference = null) {
       body.setColour(by, reference);
       stage.invalidate();
     },
     setGhost(on) {
       ghostShown = on;
-      if (body.shown) ghost.show(on ? body.shown.result : null, body.shown.grid);
+      if (body.shown) ghost.show(on ? body.shown.result : null, passive(body.shown.grid));
       stage.invalidate();
+    },
+    /** Leave room beside the shape when it is fitted. */
+    setRoomy(on) {
+      roomy = on;
+      if (!camera.touched) viewer.fit();
     },
     setGround(on) {
       ground.setVisible(on && Boolean(body.shown) && !printing);
@@ -183,11 +194,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
     },
     setDim(dim) {
       body.setDim(dim);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     setMarks(marks) {
       body.setMarks(marks);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     /** Lay another result of the same grid over the shown one, translucent; null for none. */
     overlay(result) {
@@ -200,7 +211,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
       notes = items;
       gizmo = handles;
       annotations.set(handles ? [...items, ...handles(project)] : items);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     /** Show a toolpath in place of the shape, seen from above; null brings the shape back. */
     setPrint(toolpath, bed = null) {
@@ -224,11 +235,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
       stage.invalidate();
     },
     fit(options = {}) {
-      const points = printing ? print.points() : boxPoints();
+      const points = printing ? print.points() : body.shown ? cornersOf(body.shown.result, FITTED) : [];
       if (points.length && stage.size.width) {
         fresh = false;
         if (!printing) fitted = boundsOf(body.shown.result);
-        camera.fit(points, options);
+        camera.fit(points, { margin: roomy ? ROOM.wide : ROOM.narrow, ...options });
       }
     },
     /** Do what a key of `KEYS` says, orbit by arrows, zoom by + and -; return whether it did. */
@@ -246,7 +257,8 @@ export function createViewer(container, { events = {}, still = () => false } = {
     command(name) {
       if (name === "fit") viewer.fit();
       else if (name === "projection") camera.setParallel(!camera.isParallel);
-      else camera.look(name);
+      else if (camera.touched) camera.look(name);
+      else viewer.fit({ view: name });
     },
     dispose() {
       disposed = true;
