@@ -4,7 +4,7 @@
 import { OrbitControls, THREE } from "/libraries/three.js";
 
 const ANGLE = 30; // degrees, of the perspective's height
-const MARGIN = 1.16; // of the fitted view around the shape
+const MARGIN = 1.2; // of the fitted view around the shape
 const TURN = 260; // ms of the way to a named view
 const NEVER_FLAT = 1e-4; // rad from the pole, where the azimuth would be lost
 
@@ -16,7 +16,7 @@ export const VIEWS = {
   top: [0, NEVER_FLAT],
 };
 
-/** Create the camera of a canvas. onChange is called whenever it moved. */
+/** Create the camera of a canvas (null for none, to be placed only). onChange is called whenever it moved. */
 export function createCamera(element, { onChange, still = () => false }) {
   const perspective = new THREE.PerspectiveCamera(ANGLE, 1, 1, 5000);
   const parallel = new THREE.OrthographicCamera(-1, 1, 1, -1, -5000, 5000);
@@ -122,7 +122,7 @@ export function createCamera(element, { onChange, still = () => false }) {
       go({ ...(motion?.to ?? state()), azimuth, polar }, animate);
     },
     /** Bring points (a list of [x, y, z]) into view; from a named view where one is given. */
-    fit(points, { view = null, animate = true } = {}) {
+    fit(points, { view = null, animate = true, margin = MARGIN } = {}) {
       if (points.length === 0) return;
       const now = motion?.to ?? state();
       const [azimuth, polar] = view ? VIEWS[view] ?? view : [now.azimuth, now.polar];
@@ -139,7 +139,7 @@ export function createCamera(element, { onChange, still = () => false }) {
       for (const point of points) {
         const p = new THREE.Vector3(...point).sub(target);
         const across = Math.max(Math.abs(p.dot(right)) / aspect, Math.abs(p.dot(up)));
-        distance = Math.max(distance, (MARGIN * across) / slope + depth * p.dot(back));
+        distance = Math.max(distance, (margin * across) / slope + depth * p.dot(back));
       }
       go({ azimuth, polar, distance, target }, animate);
       touched = false;
@@ -178,7 +178,7 @@ export function createCamera(element, { onChange, still = () => false }) {
     set: (to) => go({ ...to, target: to.target.clone() }, false),
     dispose() {
       cancelAnimationFrame(turning);
-      controls.dispose();
+      if (element) controls.dispose();
     },
   };
 }

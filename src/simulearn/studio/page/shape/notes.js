@@ -70,7 +70,7 @@ function targetItems(result) {
     return [
       { id: `way-${k}`, kind: "line", a: point, b: target, className },
       { id: `place-${k}`, kind: "dot", at: point, className },
-      { id: `apart-${k}`, kind: "text", at: target, shift: [0, -16], text: mm(distance), className },
+      { id: `apart-${k}`, kind: "text", at: target, shift: [0, chosen ? 20 : -16], text: mm(distance), className },
       marker,
     ];
   });

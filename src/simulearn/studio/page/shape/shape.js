@@ -49,7 +49,7 @@ export const Shape = {
     const goals = computed(() => state.tab === "goals");
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
-    let [triad, dimmer, reader, wanted] = [null, 0, 0, 0];
+    let [triad, dimmer, reader] = [null, 0, 0];
 
     const colour = () => {
       const by = hasValues(view.colour, shown.value?.result, other.value) ? view.colour : "actuator";
@@ -105,6 +105,7 @@ export const Shape = {
       watch(() => view.ground, (on) => viewer.value.setGround(on), { immediate: true });
       watch(() => view.parallel, (on) => viewer.value.camera.setParallel(on), { immediate: true });
       watch(() => [state.selection, state.hover], marks);
+      watch(() => view.playing, (on) => viewer.value.setPlaying(on));
       watch(() => view.frame, (frame) => viewer.value.setFrame(frame), { flush: "sync" });
       watch(() => [
         view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value, state.pickVertex,
@@ -157,7 +158,8 @@ export const Shape = {
       else broken.value = "missing";
     });
     onBeforeUnmount(() => {
-      for (const timer of [dimmer, reader, wanted]) clearTimeout(timer);
+      clearTimeout(dimmer);
+      clearTimeout(reader);
       triad?.dispose();
       viewer.value?.dispose();
       viewer.value = null;
@@ -181,7 +183,9 @@ export const Shape = {
         !broken.value && !printing.value && h(Summary, {
           result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value, invalid: errors.value,
         }),
-        !broken.value && (shown.value || printing.value) && h(Toolbar, { run: (name) => viewer.value.command(name) }),
+        !broken.value && (shown.value || printing.value) && h(Toolbar, {
+          run: (name) => viewer.value.command(name), printing: printing.value,
+        }),
         !broken.value && shown.value && !printing.value && h(Legend, {
           ...coloured.value, possible, distance: distance.value,
         }),

@@ -9,14 +9,14 @@ const VIEWS = [["fit", "F"], ["home", "0"], ["top", "7"], ["front", "1"], ["side
 const SHOWN = ["ghost", "ground", "dimensions", "heights"];
 
 export const Toolbar = {
-  props: { run: Function },
+  props: { run: Function, printing: Boolean },
   render() {
-    const { run } = this;
+    const { run, printing } = this;
     const projection = view.parallel ? "parallel" : "perspective";
     return h("div", { class: "shape-toolbar", role: "toolbar", "aria-label": t("shape.views"), "aria-orientation": "vertical" }, [
       ...VIEWS.map(([name, key]) => button(name, key, () => run(name))),
       button(projection, "5", () => { view.parallel = !view.parallel; }),
-      h(Display),
+      !printing && h(Display),
     ]);
   },
 };

@@ -14,6 +14,7 @@ import { boundsOf, LAST } from "./topology.js";
 
 export { canDraw } from "./stage.js";
 
+const COARSE = 8; // mm between the stations of a shape that lies over the shown one
 const CLICK = 5; // px that a press may move and still be no drag
 const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
 const TURN = Math.PI / 24; // of an arrow key
@@ -23,6 +24,8 @@ const ZOOM = 1.15; // of + and -
 export const KEYS = {
   Home: "fit", f: "fit", F: "fit", 7: "top", 1: "front", 3: "side", 0: "home", 5: "projection",
 };
+
+const passive = (grid) => grid && { ...grid, actuators: [] };
 
 /** Create a viewer in a container.
  *
@@ -34,6 +37,9 @@ export function createViewer(container, { events = {}, still = () => false } = {
   let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh] = [null, null, [], null, false, true, true];
   const stage = createStage(container, {
     before: drawNotes,
+    onPace: (plain) => {
+      for (const part of [body, ground]) part.setPlain(plain);
+    },
     onLost: () => events.onLost?.(),
     onRestored: () => events.onRestored?.(),
   });
@@ -46,9 +52,9 @@ export function createViewer(container, { events = {}, still = () => false } = {
     still,
   });
   const body = createBody();
-  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong" });
+  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong", spacing: Infinity });
   ghost.setFrame(0);
-  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target" });
+  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target", spacing: COARSE });
   const ground = createGround();
   const print = createPrint();
   const annotations = createAnnotations(container);
@@ -116,13 +122,14 @@ export function createViewer(container, { events = {}, still = () => false } = {
     theme = readTheme(container);
     stage.scene.background = new THREE.Color().setRGB(...theme.canvas, THREE.LinearSRGBColorSpace);
     for (const part of parts) part.setTheme(theme);
-    stage.invalidate();
+    stage.invalidate({ still: true });
   };
   const endTheme = watchTheme(() => requestAnimationFrame(() => !disposed && applyTheme()));
   const observer = new ResizeObserver(([entry]) => {
     const { width, height } = entry.contentRect;
     if (width === 0 || height === 0) return;
     stage.resize(width, height);
+    body.setSize(width, height);
     camera.resize(width, height);
     if (!camera.touched) viewer.fit({ view: fresh ? "home" : null, animate: false });
   });
@@ -149,7 +156,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
     /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
     show(result, grid = null) {
       body.show(result, grid);
-      ghost.show(ghostShown ? result : null, grid);
+      ghost.show(ghostShown ? result : null, passive(grid));
       if (result) {
         ground.place(boundsOf(result, 0, 0), body.mesh);
         const bounds = boundsOf(result);
@@ -168,13 +175,15 @@ export function createViewer(container, { events = {}, still = () => false } = {
       ghost.group.visible = ghostShown && Boolean(body.shown) && !printing && frame > 0.02;
       stage.invalidate();
     },
+    /** Say whether frame will follow frame. */
+    setPlaying: (on) => stage.hold(on),
     setColour(by, reference = null) {
       body.setColour(by, reference);
       stage.invalidate();
     },
     setGhost(on) {
       ghostShown = on;
-      if (body.shown) ghost.show(on ? body.shown.result : null, body.shown.grid);
+      if (body.shown) ghost.show(on ? body.shown.result : null, passive(body.shown.grid));
       stage.invalidate();
     },
     setGround(on) {
@@ -183,11 +192,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
     },
     setDim(dim) {
       body.setDim(dim);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     setMarks(marks) {
       body.setMarks(marks);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     /** Lay another result of the same grid over the shown one, translucent; null for none. */
     overlay(result) {
@@ -200,7 +209,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
       notes = items;
       gizmo = handles;
       annotations.set(handles ? [...items, ...handles(project)] : items);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     /** Show a toolpath in place of the shape, seen from above; null brings the shape back. */
     setPrint(toolpath, bed = null) {
@@ -246,7 +255,8 @@ export function createViewer(container, { events = {}, still = () => false } = {
     command(name) {
       if (name === "fit") viewer.fit();
       else if (name === "projection") camera.setParallel(!camera.isParallel);
-      else camera.look(name);
+      else if (camera.touched) camera.look(name);
+      else viewer.fit({ view: name });
     },
     dispose() {
       disposed = true;
