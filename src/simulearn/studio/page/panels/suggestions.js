@@ -4,8 +4,11 @@ import { h, onBeforeUnmount, watch } from "/libraries/vue.js";
 import { withDesign } from "../service/designs.js";
 import { mm } from "../service/format.js";
 import { endPreview, showPreview } from "../service/preview.js";
-import { askSuggestions, dropSuggestions, freshSuggestions } from "../service/suggestions.js";
-import { edit, notify, state, undo } from "../store.js";
+import {
+  askSuggestions, drawSuggestions, dropSuggestions, freshSuggestions,
+} from "../service/suggestions.js";
+import { takeDesign } from "../service/taking.js";
+import { notify, state, undo, view } from "../store.js";
 import { t } from "../text/text.js";
 import { rove } from "./controls.js";
 import { icon } from "./icons.js";
@@ -17,9 +20,7 @@ const PICTURE = { width: 88, height: 56 }; // pixels
 function take(card) {
   const words = changeWords(card.changes);
   endPreview(card.grid);
-  edit((document) => withDesign(document, document, card.grid), { label: t("panels.didSuggestion", { words }) });
-  // Its shape is known already: the scene need not wait for it.
-  state.answer = { document: state.document, result: card.result, milliseconds: state.answer.milliseconds };
+  takeDesign(state.document, card, t("panels.didSuggestion", { words }));
   notify(t("panels.tookSuggestion", { words }), { label: t("panels.undo"), run: undo });
 }
 
@@ -58,6 +59,7 @@ export const Suggestions = {
   setup() {
     watch([() => state.document.grid, () => state.document.goals, () => state.answer], askSuggestions,
       { immediate: true });
+    watch(() => view.theme, drawSuggestions, { flush: "post" });
     onBeforeUnmount(() => {
       dropSuggestions();
       for (const { grid } of state.suggestions?.cards ?? []) endPreview(grid);
@@ -68,8 +70,8 @@ export const Suggestions = {
     const content = () => {
       const { suggestions } = state;
       if (!suggestions) return h("p", { class: "note", role: "status" }, t("panels.suggesting"));
-      if (suggestions.state === "failed") return problemNote(t("panels.suggestionsFailed"), suggestions.problem);
-      const { cards, error } = suggestions;
+      const { cards, error, problem } = suggestions;
+      if (problem) return problemNote(t("panels.suggestionsFailed"), problem);
       if (cards.length === 0) return note("info", t("panels.suggestionsNone"));
       const fresh = freshSuggestions();
       return [
