@@ -21,6 +21,7 @@ export const editor = shallowReactive({
   dragging: false, // whether parts are being moved
   pressed: false, // whether a button or finger is down
   keys: false, // whether the last input was a key: then the focus is shown
+  grab: false, // whether the space bar is down, to move the plan
   panning: false, // whether the plan is being moved
   focus: null, // { joint } or { beam }: what keys reach by Tab
   snapped: null, // what `snap` found: { point, kind, guides, text }
@@ -105,7 +106,7 @@ export function clearMarks() {
 export async function focusPart(part) {
   editor.focus = part;
   await nextTick();
-  const selector = part && (part.joint !== undefined ? `[data-joint="${part.joint}"]` : `[data-beam="${part.beam}"]`);
-  const target = (part && element?.querySelector(`[role=option]${selector}`)) || element;
+  const selector = part?.joint !== undefined ? `[data-joint="${part.joint}"]` : `[data-beam="${part?.beam}"]`;
+  const target = element?.querySelector(`[role=option]${selector}`) ?? element;
   target?.focus({ preventScroll: true });
 }

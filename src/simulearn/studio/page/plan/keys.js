@@ -2,13 +2,17 @@
 // key is meant for the plan and not for a field, a menu or another part of the page.
 
 const PLAIN = {
-  v: "select", d: "draw", s: "split", x: "fix", f: "fit", "+": "longer", "=": "longer", "-": "shorter", "0": "quarters 0",
-  1: "quarters 1", 2: "quarters 2", 3: "quarters 3", 4: "quarters 4", b: "flip", m: "mirror x", r: "rotate 90",
+  v: "select", d: "draw", s: "split", x: "fix", f: "fit", "+": "longer", "=": "longer", "-": "shorter",
+  0: "quarters 0", 1: "quarters 1", 2: "quarters 2", 3: "quarters 3", 4: "quarters 4", b: "flip",
+  m: "mirror x", r: "rotate 90",
   delete: "delete", backspace: "delete",
 };
 const SHIFTED = { m: "mirror y", r: "rotate -90", "+": "longer", "*": "longer", f10: "menu" };
 const CONTROL = { z: "undo", y: "redo", a: "all", c: "copy", v: "paste", d: "duplicate" };
-const FIELDS = "input, textarea, select, [contenteditable=''], [contenteditable=true], dialog, [role=dialog], [role=menu]";
+const FIELDS = [
+  "input", "textarea", "select", "[contenteditable='']", "[contenteditable=true]", "dialog", "[role=dialog]",
+  "[role=menu]",
+].join();
 
 /** Return the command of a key event, or null. */
 export function command({ key, ctrlKey, metaKey, shiftKey, altKey }) {

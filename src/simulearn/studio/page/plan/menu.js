@@ -39,12 +39,14 @@ function groups(part) {
   return [
     own,
     [
-      ...(part ? [entry("copy", "Ctrl C", copySelection), entry("duplicate", "Ctrl D", duplicateSelection)] : []),
+      ...(part ? [entry("copy", "Ctrl C", copySelection)] : []),
+      ...(part ? [entry("duplicate", "Ctrl D", duplicateSelection)] : []),
       entry("paste", "Ctrl V", paste, !canPaste()),
       ...(part ? [] : [entry("all", "Ctrl A", selectAll), entry("fit", "F", fitAll)]),
     ],
     [
-      entry("mirrorX", "M", () => mirrorSelection("x")), entry("mirrorY", "Shift M", () => mirrorSelection("y")),
+      entry("mirrorX", "M", () => mirrorSelection("x")),
+      entry("mirrorY", "Shift M", () => mirrorSelection("y")),
       entry("rotate", "R", () => rotateSelection(90)),
     ],
     part && some ? [entry("delete", "Del", removeSelection)] : [],
@@ -67,7 +69,8 @@ export const Menu = {
     const onKeydown = (event) => {
       const all = entries(element);
       const at = all.indexOf(document.activeElement);
-      const step = { ArrowDown: at + 1, ArrowUp: at - 1 + all.length, Home: 0, End: all.length - 1 }[event.key];
+      const last = all.length - 1;
+      const step = { ArrowDown: at + 1, ArrowUp: at + last, Home: 0, End: last }[event.key];
       if (step !== undefined) all[step % all.length].focus();
       else if (event.key === "Escape" || event.key === "Tab") close();
       else return;
@@ -97,14 +100,16 @@ export const Menu = {
         },
         onContextmenu: (event) => event.preventDefault(),
         style: { transform: `translate(${x}px, ${y}px)`, width: `${WIDTH}px` },
-      }, list.map((group, k) => h("div", { role: "group", key: k }, group.map(({ label, key, run, disabled }) =>
-        h("button", {
+      }, list.map((group, k) => h("div", { role: "group", key: k }, group.map((one) => {
+        const { label, key, run, disabled } = one;
+        return h("button", {
           type: "button", role: "menuitem", key: label, disabled, tabindex: -1,
           onClick: () => {
             close();
             run();
           },
-        }, [h("span", label), h("kbd", { "aria-hidden": "true" }, key)]))))));
+        }, [h("span", label), h("kbd", { "aria-hidden": "true" }, key)]);
+      })))));
     };
   },
 };

@@ -24,10 +24,10 @@ export function beside(ends, middle, panel, view, tools = 64) {
   const upright = y < middle[1] ? ["above", "below"] : ["below", "above"];
   const level = x < middle[0] ? ["left", "right"] : ["right", "left"];
   const order = steep ? [...level, ...upright] : [...upright, ...level];
-  const fits = ([px, py]) =>
-    px >= tools && py >= EDGE && px + panel.width <= view.width - EDGE && py + panel.height <= view.height - EDGE;
-  const name = order.find((one) => fits(places[one])) ?? order.find((one) => fits(clamped(places[one], panel, view, tools)));
-  return clamped(places[name ?? "below"], panel, view, tools);
+  const [most, deepest] = [view.width - EDGE - panel.width, view.height - EDGE - panel.height];
+  const fits = ([px, py]) => px >= tools && py >= EDGE && px <= most && py <= deepest;
+  const name = order.find((one) => fits(places[one])) ?? order[0];
+  return clamped(places[name], panel, view, tools);
 }
 
 /** Return a panel's corner moved into the view. */

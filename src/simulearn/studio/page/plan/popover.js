@@ -21,7 +21,7 @@ export const Popover = {
     const { grid } = state.document;
     const { beams } = state.selection;
     const beam = editor.popover?.beam;
-    if (beam === undefined || !beams.includes(beam) || editor.dragging || state.tool !== "select") return null;
+    if (!beams.includes(beam) || editor.dragging || state.tool !== "select") return null;
     const ends = grid.beams[beam].map((k) => toScreen(editor.camera, grid.joints[k]));
     if (!anyVisible(editor.camera, editor.size, [placeOf(grid, { beam })])) return null;
     const middle = toScreen(editor.camera, bounds(grid).middle);
@@ -61,6 +61,7 @@ function sign(ratio) {
 function button(name, shape, onClick, key = "", disabled = false) {
   const label = t(`plan.${name}`);
   return h("button", {
-    type: "button", class: ["plan-button", name], "aria-label": label, title: key ? `${label} (${key})` : label, disabled, onClick,
+    type: "button", class: ["plan-button", name], "aria-label": label,
+    title: key ? `${label} (${key})` : label, disabled, onClick,
   }, icon(shape, 16));
 }

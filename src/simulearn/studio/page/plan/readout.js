@@ -90,12 +90,21 @@ function partRows(part) {
   const { grid } = state.document;
   const marks = marksOf(state.check, grid);
   const mark = part.joint !== undefined ? marks.joints.get(part.joint) : marks.beams.get(part.beam);
-  const title = part.joint !== undefined
-    ? [t("plan.joint", { joint: part.joint }), grid.fixed === part.joint ? ` · ${t("plan.fixed")}` : ""].join("")
-    : `${t("plan.beam", { beam: part.beam })} · ${grid.actuators[part.beam] === 0 ? t("plan.noActuator") : ratioText(grid.actuators[part.beam])}`;
+  const title = part.joint !== undefined ? jointTitle(part.joint) : beamTitle(part.beam);
+  const facts = factsOf(part).map(({ name, value }) => h("span", [h("small", `${name} `), value]));
   return [
     h("div", { class: "title" }, title),
-    h("div", { class: "row" }, factsOf(part).map(({ name, value }) => h("span", [h("small", `${name} `), value]))),
+    h("div", { class: "row" }, facts),
     ...(mark ? mark.messages.map((text) => h("div", { class: ["fault", mark.kind] }, text)) : []),
   ];
+}
+
+function jointTitle(k) {
+  const name = t("plan.joint", { joint: k });
+  return state.document.grid.fixed === k ? `${name} · ${t("plan.fixed")}` : name;
+}
+
+function beamTitle(b) {
+  const ratio = state.document.grid.actuators[b];
+  return `${t("plan.beam", { beam: b })} · ${ratio === 0 ? t("plan.noActuator") : ratioText(ratio)}`;
 }
