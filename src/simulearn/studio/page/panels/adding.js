@@ -1,6 +1,6 @@
 // Adding a goal: a point is picked in the shape, or chosen from a list.
 
-import { h, onBeforeUnmount, ref } from "/libraries/vue.js";
+import { h, nextTick, onBeforeUnmount, ref } from "/libraries/vue.js";
 import { addGoal, goalOf, vertexPoint } from "../document/goals.js";
 import { edit, select, stale, state, view } from "../store.js";
 import { t } from "../text/text.js";
@@ -62,10 +62,12 @@ export const Adding = {
         h("optgroup", { label: t("panels.beams") }, beams.map(option)),
       ];
     };
-    const addChosen = (event) => {
+    const addChosen = async (event) => {
       event.preventDefault();
       if (chosen.value) add(JSON.parse(chosen.value));
       chosen.value = "";
+      await nextTick(); // who uses the keyboard goes on with the target
+      globalThis.document.querySelector(".goal.selected input")?.focus();
     };
     return () => {
       const picking = Boolean(state.pickVertex);

@@ -1,6 +1,6 @@
 // What a search found and the designs on the way there, each shown in the scene and taken by a button.
 
-import { h, onBeforeUnmount, ref, watch } from "/libraries/vue.js";
+import { h, nextTick, onBeforeUnmount, ref, watch } from "/libraries/vue.js";
 import { mm, number, seconds } from "../service/format.js";
 import { discardSearch, hideStage, showStage } from "../service/search.js";
 import { takeDesign } from "../service/taking.js";
@@ -16,6 +16,13 @@ function takeStage(stage) {
   select({});
   discardSearch();
   notify(t("panels.tookSearch"), { label: t("panels.undo"), run: undo });
+}
+
+/** After the card is gone the focus goes on to what begins a search. */
+async function refocus({ currentTarget }) {
+  const section = currentTarget.closest("section");
+  await nextTick();
+  section.querySelector(".search-form > .button")?.focus();
 }
 
 function measure(error, name) {
@@ -87,7 +94,7 @@ export const Found = {
         best.agrees === false && note("warning", t("panels.beyondBound", { mm: mm(best.bound_mm) })),
         best.why_no_fea && note("warning", t("panels.whyNoFea", { why: sentence(best.why_no_fea) })),
         ...warnings(best.warnings),
-        h("div", { class: "row" }, [
+        h("div", { class: "row", onClick: refocus }, [
           button(t(last ? "panels.take" : "panels.takeStep"), () => takeStage(stageOf(at.value)), {
             kind: "primary",
           }),

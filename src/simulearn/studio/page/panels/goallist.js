@@ -1,6 +1,6 @@
 // The goals of a document: how far each is missed, its target and weight.
 
-import { computed, h } from "/libraries/vue.js";
+import { computed, h, nextTick } from "/libraries/vue.js";
 import { goalErrors, moveGoal, removeGoal, setWeight } from "../document/goals.js";
 import { mm } from "../service/format.js";
 import { edit, endMerge, select, stale, state } from "../store.js";
@@ -40,9 +40,12 @@ function goal({ vertex, target, weight }, k, error) {
         onClick: () => select({ goal: k }),
       }, [h("span", { class: "goal-mark", "aria-hidden": "true" }), h("span", name)]),
       h("span", { class: ["goal-error numbers", { old: stale.value }] }, error === null ? "–" : mm(error)),
-      iconButton("trash", t("panels.removeGoal", { name }), () => {
+      iconButton("trash", t("panels.removeGoal", { name }), async (event) => {
+        const list = event.currentTarget.closest("ol");
         edit((document) => removeGoal(document, k), { label: t("panels.didRemoveGoal", { name }) });
         select({});
+        await nextTick(); // the focus goes on to the goal that took its place
+        [...list.querySelectorAll(".goal-name")].slice(0, k + 1).at(-1)?.focus();
       }, { class: "icon-button small" }),
     ]),
     h("div", { class: "goal-fields" }, [

@@ -15,6 +15,7 @@ import { icon } from "./icons.js";
 import { note, problemNote } from "./notes.js";
 import { changeWords, gainWords } from "./vertices.js";
 
+const NEAR = 0.1; // mm, about the model's own error: a design that comes so near is there
 const PICTURE = { width: 88, height: 56 }; // pixels
 
 function take(card) {
@@ -24,7 +25,7 @@ function take(card) {
   notify(t("panels.tookSuggestion", { words }), { label: t("panels.undo"), run: undo });
 }
 
-function card(one, error, fresh) {
+function card(one, k, error, fresh) {
   const words = changeWords(one.changes);
   const gain = error - one.error;
   const show = () => {
@@ -34,7 +35,7 @@ function card(one, error, fresh) {
     });
   };
   const hide = () => endPreview(one.grid);
-  return h("li", { key: words }, [
+  return h("li", { key: k }, [ // by its place, so that the focus stays where it is
     h("button", {
       type: "button", class: "suggestion", "aria-disabled": fresh ? undefined : "true",
       "aria-label": t("panels.cardName", { words, mm: mm(one.error), gain: gainWords(gain) }),
@@ -72,14 +73,15 @@ export const Suggestions = {
       if (!suggestions) return h("p", { class: "note", role: "status" }, t("panels.suggesting"));
       const { cards, error, problem } = suggestions;
       if (problem) return problemNote(t("panels.suggestionsFailed"), problem);
-      if (cards.length === 0) return note("info", t("panels.suggestionsNone"));
       const fresh = freshSuggestions();
+      if (error < NEAR && fresh) return h("p", { class: "note" }, t("panels.arrived"));
+      if (cards.length === 0) return note("info", t("panels.suggestionsNone"));
       return [
         !fresh ? h("p", { class: "note" }, t("panels.suggestionsOld"))
           : cards[0].error >= error ? h("p", { class: "note" }, t("panels.suggestionsWorse"))
             : h("p", { class: "note" }, t("panels.suggestionsNote")),
         h("ol", { class: ["suggestions", { old: !fresh }], "aria-label": t("panels.suggestions"), onKeydown },
-          cards.map((one) => card(one, error, fresh))),
+          cards.map((one, k) => card(one, k, error, fresh))),
       ];
     };
     return () => h("section", { class: "part-section", "aria-label": t("panels.suggestions") }, [
