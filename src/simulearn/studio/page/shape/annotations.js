@@ -8,13 +8,15 @@ const MARKERS = { // centred on the place, px
   ring: ["circle", { r: 7 }],
   target: ["path", { d: "M0-8 8 0 0 8-8 0zM0-2.5v5M-2.5 0h5" }],
 };
+const APART = 34; // px between the ends of a dimension that is shown
 const REACH = 15; // px around a marker in which it is hit
 
 /** Create the layer in a container.
  *
  * Items of `set`: { id, kind: "line", a, b } | { kind: "text", at, text, shift: [dx, dy] } |
  * { kind: "dot" | "ring" | "target", at, name?, onPress?, onHover?, onKey? } |
- * { kind: "polygon", points } with `className`; places are [x, y, z] in mm.
+ * { kind: "polygon", points } with `className`; places are [x, y, z] in mm. An item with span: [a, b]
+ * is shown only while these two places are seen apart.
  */
 export function createAnnotations(container) {
   const svg = globalThis.document.createElementNS(SPACE, "svg");
@@ -79,7 +81,7 @@ export function createAnnotations(container) {
     draw(project) {
       for (const { item, element } of shown.values()) {
         const places = (item.points ?? (item.kind === "line" ? [item.a, item.b] : [item.at])).map(project);
-        const seen = places.every((place) => place.seen);
+        const seen = places.every((place) => place.seen) && (!item.span || apart(...item.span.map(project)) > APART);
         element.style.display = seen ? "" : "none";
         if (!seen) continue;
         const [p, q] = places;
@@ -96,6 +98,8 @@ export function createAnnotations(container) {
     dispose: () => svg.remove(),
   };
 }
+
+const apart = (p, q) => Math.hypot(p.x - q.x, p.y - q.y);
 
 function create(name, attributes) {
   const element = globalThis.document.createElementNS(SPACE, name);

@@ -103,6 +103,7 @@ export const Shape = {
       watch(() => view.colour, colour);
       watch(() => view.ghost, (on) => viewer.value.setGhost(on));
       watch(() => view.ground, (on) => viewer.value.setGround(on), { immediate: true });
+      watch(() => view.dimensions, (on) => viewer.value.setRoomy(on), { immediate: true });
       watch(() => view.parallel, (on) => viewer.value.camera.setParallel(on), { immediate: true });
       watch(() => [state.selection, state.hover], marks);
       watch(() => view.playing, (on) => viewer.value.setPlaying(on));

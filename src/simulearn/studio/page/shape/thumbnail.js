@@ -4,7 +4,7 @@ import { THREE } from "/libraries/three.js";
 import { createBody } from "./body.js";
 import { createCamera, VIEWS } from "./camera.js";
 import { readTheme } from "./theme.js";
-import { boundsOf, LAST } from "./topology.js";
+import { cornersOf, LAST } from "./topology.js";
 
 const FINEST = 2; // pixels of the picture for one of the page, at most
 const IDLE = 20000; // ms without a picture after which the canvas is given back
@@ -38,12 +38,8 @@ function draw(result, grid, width, height, frame) {
   body.show(result, grid);
   renderer.setPixelRatio(Math.min(globalThis.devicePixelRatio || 1, FINEST));
   renderer.setSize(width, height, false);
-  const { low, high } = boundsOf(result, Math.round(frame), Math.round(frame));
   camera.resize(width, height);
-  camera.fit(
-    [low, high].flatMap(([x]) => [low, high].flatMap(([, y]) => [low, high].map(([, , z]) => [x, y, z]))),
-    { view: VIEWS.home, animate: false, margin: 1.06 },
-  );
+  camera.fit(cornersOf(result, [Math.round(frame)]), { view: VIEWS.home, animate: false, margin: 1.12 });
   renderer.render(scene, camera.camera);
   return renderer.domElement.toDataURL("image/png");
 }

@@ -60,6 +60,15 @@ export function boundsOf(result, first = 0, last = LAST) {
   return { low, high };
 }
 
+/** Return the corners [x, y, z] of all joints and sections in some frames. */
+export function cornersOf(result, frames) {
+  const points = [];
+  for (const [numbers, size] of [[result.joints, result.jointCount * 24], [result.beams, result.beamCount * 36]])
+    for (const frame of frames)
+      for (let k = frame * size; k < (frame + 1) * size; k += 3) points.push([numbers[k], numbers[k + 1], numbers[k + 2]]);
+  return points;
+}
+
 /** Return {before, after, t}: the two frames around a fractional one and how far it is between them. */
 export function between(frame) {
   const at = Math.min(LAST, Math.max(0, frame));

@@ -10,13 +10,15 @@ import { pick } from "./picking.js";
 import { createPrint } from "./print.js";
 import { createStage } from "./stage.js";
 import { readTheme, watchTheme } from "./theme.js";
-import { boundsOf, LAST } from "./topology.js";
+import { boundsOf, cornersOf } from "./topology.js";
 
 export { canDraw } from "./stage.js";
 
 const COARSE = 8; // mm between the stations of a shape that lies over the shown one
 const CLICK = 5; // px that a press may move and still be no drag
 const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
+const FITTED = [0, 4, 8, 11]; // frames that are brought into view
+const ROOM = { narrow: 1.2, wide: 1.42 }; // around the shape; wide where dimensions stand beside it
 const TURN = Math.PI / 24; // of an arrow key
 const ZOOM = 1.15; // of + and -
 
@@ -34,7 +36,7 @@ const passive = (grid) => grid && { ...grid, actuators: [] };
  */
 export function createViewer(container, { events = {}, still = () => false } = {}) {
   let [theme, pointer, hovering, pressed, fitted, disposed] = [readTheme(container), null, 0, null, null, false];
-  let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh] = [null, null, [], null, false, true, true];
+  let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh, roomy] = [null, null, [], null, false, true, true, false];
   const stage = createStage(container, {
     before: drawNotes,
     onPace: (plain) => {
@@ -137,11 +139,6 @@ export function createViewer(container, { events = {}, still = () => false } = {
   applyTheme();
   stage.setCamera(camera.camera);
 
-  const boxPoints = () => {
-    if (!body.shown) return [];
-    const { low, high } = boundsOf(body.shown.result, 0, LAST);
-    return [low, high].flatMap(([x]) => [low, high].flatMap(([, y]) => [low, high].map(([, , z]) => [x, y, z])));
-  };
   const sizeOf = ({ low, high }) => Math.hypot(...high.map((x, axis) => x - low[axis]));
   const grown = (bounds) => {
     const ratio = sizeOf(bounds) / sizeOf(fitted);
@@ -185,6 +182,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
       ghostShown = on;
       if (body.shown) ghost.show(on ? body.shown.result : null, passive(body.shown.grid));
       stage.invalidate();
+    },
+    /** Leave room beside the shape when it is fitted. */
+    setRoomy(on) {
+      roomy = on;
+      if (!camera.touched) viewer.fit();
     },
     setGround(on) {
       ground.setVisible(on && Boolean(body.shown) && !printing);
@@ -233,11 +235,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
       stage.invalidate();
     },
     fit(options = {}) {
-      const points = printing ? print.points() : boxPoints();
+      const points = printing ? print.points() : body.shown ? cornersOf(body.shown.result, FITTED) : [];
       if (points.length && stage.size.width) {
         fresh = false;
         if (!printing) fitted = boundsOf(body.shown.result);
-        camera.fit(points, options);
+        camera.fit(points, { margin: roomy ? ROOM.wide : ROOM.narrow, ...options });
       }
     },
     /** Do what a key of `KEYS` says, orbit by arrows, zoom by + and -; return whether it did. */
