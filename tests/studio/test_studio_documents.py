@@ -20,6 +20,8 @@ DOCUMENT = {
     "printer": "ender-3",
 }
 
+EMPTY = DOCUMENT["grid"] | {"joints": [], "beams": [], "actuators": [], "fixed": 0}
+
 
 @pytest.fixture
 def folder(tmp_path):
@@ -111,11 +113,11 @@ def test_a_name_that_is_none_touches_no_file(client, folder, name):
 @pytest.mark.parametrize(
     "document",
     [
-        changed(["grid", "joints"], []) | {"goals": []} | {"grid": DOCUMENT["grid"] | {"joints": [], "beams": [], "actuators": [], "fixed": 0}},
+        DOCUMENT | {"goals": [], "grid": EMPTY},
         changed(["grid", "joints"], [[0.0, 0.0]] * 9),
         changed(["grid", "material"], "of another place"),
     ],
-)  # fmt: skip
+)
 def test_a_drawing_may_be_half_done(client, document):
     assert save(client, 0, document).json() == {"revision": 1}
     assert client.get(f"/api/documents/{NAME}").json()["document"] == document
@@ -193,9 +195,7 @@ def test_a_full_disk_leaves_the_document_as_it_was(client, folder, monkeypatch):
     assert not [path for path in folder.iterdir() if path.name not in (f"{NAME}.json", ".lock")]
 
 
-@pytest.mark.parametrize(
-    "text", ["", "{", "[]", '{"schema": "simulearn.saved/1", "revision": "1"}']
-)
+@pytest.mark.parametrize("text", ["", "{", "[]", '{"schema": "simulearn.saved/1", "revision": 1}'])
 def test_a_damaged_file_is_said_and_not_replaced(client, folder, text):
     save(client, 0)
     path = folder / f"{NAME}.json"

@@ -101,5 +101,11 @@ export async function exportFile(grid, format, { engine = "learned", name = "gri
   const response = await request("/api/export", {
     method: "POST", body: { grid, format, engine, name }, accept: "*/*",
   });
-  return { blob: await response.blob(), name: `${name}${format}` };
+  return { blob: await response.blob(), name: fileNameOf(response) ?? `${name}${format}` };
+}
+
+/** Return the file name that an answer has in its header; several files come as one .zip. */
+function fileNameOf(response) {
+  const encoded = /filename\*=UTF-8''([^;]+)/.exec(response.headers.get("Content-Disposition") ?? "")?.[1];
+  return encoded === undefined ? null : decodeURIComponent(encoded);
 }
