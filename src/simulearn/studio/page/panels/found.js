@@ -1,6 +1,6 @@
 // What a search found and the designs on the way there, each shown in the scene and taken by a button.
 
-import { h, nextTick, onBeforeUnmount, ref, watch } from "/libraries/vue.js";
+import { h, onBeforeUnmount, ref, watch } from "/libraries/vue.js";
 import { mm, number, seconds } from "../service/format.js";
 import { discardSearch, hideStage, showStage } from "../service/search.js";
 import { takeDesign } from "../service/taking.js";
@@ -19,10 +19,10 @@ function takeStage(stage) {
 }
 
 /** After the card is gone the focus goes on to what begins a search. */
-async function refocus({ currentTarget }) {
+function refocus({ currentTarget, target }) {
+  if (!target.closest("button")) return;
   const section = currentTarget.closest("section");
-  await nextTick();
-  section.querySelector(".search-form > .button")?.focus();
+  setTimeout(() => section.querySelector(".search-form > .button")?.focus());
 }
 
 function measure(error, name) {
@@ -94,7 +94,7 @@ export const Found = {
         best.agrees === false && note("warning", t("panels.beyondBound", { mm: mm(best.bound_mm) })),
         best.why_no_fea && note("warning", t("panels.whyNoFea", { why: sentence(best.why_no_fea) })),
         ...warnings(best.warnings),
-        h("div", { class: "row", onClick: refocus }, [
+        h("div", { class: "row", onClickCapture: refocus }, [
           button(t(last ? "panels.take" : "panels.takeStep"), () => takeStage(stageOf(at.value)), {
             kind: "primary",
           }),
