@@ -127,7 +127,8 @@ export function createBody({ opacity = 1, edges = 0.3, one = null, spacing } = {
       lineMaterial.opacity = edges * (1 - 0.6 * dim);
     },
     setTheme(theme) {
-      const same = one && Object.fromEntries(["beam", "joint", "top", "bottom"].map((name) => [name, theme[one]]));
+      const names = ["beam", "joint", "top", "bottom"];
+      const same = one && Object.fromEntries(names.map((name) => [name, theme[one]]));
       paintWith(material, { ...theme, ...same });
       outline.material.uniforms.accent.value.fromArray(theme.accent);
       lineMaterial.color = plain(theme[one ?? "text"]);
