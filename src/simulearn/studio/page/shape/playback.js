@@ -81,7 +81,7 @@ export const Playback = {
           ...(props.snaps ?? []).map(({ released }) => mark(10 * released, "snap", t("shape.snapsHere"))),
         ]),
       ]),
-      h("output", { class: "shape-moment" }, moment(view.frame)),
+      h("output", { class: "shape-moment" }, props.disabled ? "" : moment(view.frame)),
     ]);
   },
 };

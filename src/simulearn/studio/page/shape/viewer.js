@@ -14,13 +14,12 @@ import { boundsOf, cornersOf, LAST } from "./topology.js";
 
 export { canDraw } from "./stage.js";
 
-const COARSE = 8; // mm between the stations of a shape that lies over the shown one
 const UNMOVED = 0.02; // frames: before it the flat sheet is not drawn beside the shape
 const PRINT_VIEW = [0, 0.42]; // rad: from above, a little aslant
 const CLICK = 5; // px that a press may move and still be no drag
 const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
 const FITTED = [0, 4, 8, 11]; // frames that are brought into view
-const ROOM = { narrow: 1.2, wide: 1.42 }; // around the shape; wide where dimensions stand beside it
+const ROOM = { narrow: 1.28, wide: 1.45 }; // around the shape; wide where dimensions stand beside it
 const TURN = Math.PI / 24; // of an arrow key
 const ZOOM = 1.15; // of + and -
 
@@ -60,7 +59,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
   const body = createBody();
   const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong", spacing: Infinity });
   ghost.setFrame(0);
-  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target", spacing: COARSE });
+  const other = createBody({ opacity: 0, edges: 0.75, one: "target" }); // two surfaces so near would flicker
   const ground = createGround();
   const print = createPrint();
   const annotations = createAnnotations(container);
