@@ -2,6 +2,9 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+# uv installs in seconds what takes pip a minute; it is used where it is there.
+UV := $(shell command -v uv 2>/dev/null)
+INSTALL := $(if $(UV),$(UV) pip install --quiet --python $(BIN)/python,$(BIN)/python -m pip install --quiet --disable-pip-version-check)
 
 # Small matrices gain nothing from threads; two test processes would only fight over the cores.
 ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
@@ -44,12 +47,15 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/snaps.py --designs 20
 	$(ONE_THREAD) $(BIN)/python benchmarks/curve.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/inverse.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/studio.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/studio_users.py
 
-# The pictures of README.md.
+# The pictures of README.md and docs/studio.md.
 pictures: $(VENV)/ready
 	mkdir -p docs/pictures
 	$(BIN)/simulearn simulate examples/twist.json -o docs/pictures/twist.gif
 	$(BIN)/simulearn simulate examples/random.json -o docs/pictures/random.png
+	$(BIN)/python benchmarks/studio_pictures.py
 
 clean:
 	rm -rf .venv .venv-* out
@@ -58,6 +64,6 @@ $(VENV)/ready: pyproject.toml requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 		{ echo "SimuLearn needs Python 3.11 or newer; name one with: make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
+	$(INSTALL) -r requirements.lock
+	$(INSTALL) --no-deps -e .
 	touch $(VENV)/ready

@@ -127,7 +127,9 @@ def first_look(page: Page, studio: Studio) -> tuple[float, float]:
     page.goto(studio.url)
     page.locator("canvas").first.wait_for()
     usable = time.perf_counter() - begun
-    page.wait_for_function("import('/page/store.js').then(({ state }) => state.answer !== null)")
+    page.wait_for_function(
+        "() => import('/page/store.js').then(({ state }) => state.answer !== null)"
+    )
     return usable, time.perf_counter() - begun
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 
-from simulearn.errors import InputError
+from simulearn.errors import Cancel, InputError, stop_if
 from simulearn.files import replacing
 from simulearn.simulate import Result, write_json, write_npz
 
@@ -23,10 +23,10 @@ def _figure(result: Result, path: Path) -> None:
         picture.savefig(temporary)
 
 
-def _animation(result: Result, path: Path) -> None:
+def _animation(result: Result, path: Path, cancel: Cancel | None = None) -> None:
     from simulearn.show import animate
 
-    animate(result, path)
+    animate(result, path, cancel=cancel)
 
 
 def _surface(result: Result, path: Path) -> None:
@@ -107,10 +107,21 @@ def check_place(path: Path, sources: Sequence[Path] = ()) -> None:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from error
 
 
-def write(result: Result, path: Path) -> None:
+def write(result: Result, path: Path, cancel: Cancel | None = None) -> None:
     """Write a result in the format of the file's ending.
+
+    Args:
+        result: what to write.
+        path: the file.
+        cancel: stops an animation; all else takes less time.
 
     Raises:
         InputError: the file cannot be written.
+        CancelledError: the token was set.
     """
-    WRITERS[path.suffix.lower()](result, path)
+    stop_if(cancel)
+    writer = WRITERS[path.suffix.lower()]
+    if writer is _animation:
+        _animation(result, path, cancel)
+    else:
+        writer(result, path)

@@ -35,6 +35,39 @@ class Client:
             return await client.request(method, path, **options)
 
 
+async def raw(app, method, path, received, headers=None):
+    """Return the events that an application sends for a list of events that it receives.
+
+    A coroutine function among them is called for its event.
+    """
+    given = {"host": "localhost", **(headers or {})}
+    scope = {
+        "type": "http",
+        "asgi": {"version": "3.0"},
+        "http_version": "1.1",
+        "method": method,
+        "path": path,
+        "raw_path": path.encode(),
+        "root_path": "",
+        "scheme": "http",
+        "query_string": b"",
+        "client": None,
+        "server": None,
+        "headers": [(key.encode(), value.encode()) for key, value in given.items()],
+    }
+    events, left = [], list(received)
+
+    async def receive():
+        event = left.pop(0)
+        return await event() if callable(event) else event
+
+    async def send(event):
+        events.append(event)
+
+    await app(scope, receive, send)
+    return events
+
+
 def problem(response, status, code=None):
     """Return a response's problem, which must have this status and code."""
     assert response.headers["content-type"] == "application/problem+json", response.text

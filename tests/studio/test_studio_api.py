@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from asking import Client, problem
+from asking import Client, problem, raw
 
 from simulearn.errors import CancelledError
 from simulearn.grid import Grid, grid_to_dict, lattice, make
@@ -292,31 +292,26 @@ def test_a_simulation_ends_when_its_client_has_gone(saddle, monkeypatch):
     client, gate = Client(), Gate()
     monkeypatch.setattr(designs, "engine_of", lambda *_: gate)
     body = json.dumps({"grids": [saddle]}).encode()
-    headers = {"host": "localhost", "content-type": "application/json"}
+    sent = {"type": "http.request", "body": body, "more_body": False}
 
-    async def ask():
-        events = [{"type": "http.request", "body": body, "more_body": False}]
+    async def leave():
+        while not gate.begun.is_set():
+            await asyncio.sleep(0.01)
+        return {"type": "http.disconnect"}
 
-        async def receive():
-            if events:
-                return events.pop()
-            while not gate.begun.is_set():
-                await asyncio.sleep(0.01)
-            return {"type": "http.disconnect"}
-
-        async def send(_):
-            pass
-
-        scope = {
-            "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST",
-            "path": "/api/simulate", "raw_path": b"/api/simulate", "root_path": "",
-            "scheme": "http", "query_string": b"", "client": None, "server": None,
-            "headers": [(k.encode(), v.encode()) for k, v in headers.items()],
-        }  # fmt: skip
-        await client.app(scope, receive, send)
-
-    asyncio.run(ask())
+    headers = {"content-type": "application/json"}
+    asyncio.run(raw(client.app, "POST", "/api/simulate", [sent, leave], headers))
     assert gate.cancelled.wait(10)
+
+
+def test_a_client_that_leaves_while_it_sends_is_no_mistake(client, caplog):
+    received = [
+        {"type": "http.request", "body": b"{", "more_body": True},
+        {"type": "http.disconnect"},
+    ]
+    headers = {"content-type": "application/json"}
+    assert asyncio.run(raw(client.app, "POST", "/api/simulate", received, headers)) == []
+    assert caplog.text == ""
 
 
 @pytest.mark.parametrize("cells", [(5, 5), (6, 7)])

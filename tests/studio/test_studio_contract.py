@@ -13,7 +13,7 @@ from simulearn.studio.settings import Settings
 BY_RULES = [negative_data_rejection, positive_data_acceptance]
 WITHOUT_INPUT = {"/api/version", "/api/library", "/api/materials", "/api/printers"}
 BOUNDED = settings(
-    max_examples=25,
+    max_examples=15,
     deadline=None,
     database=None,
     derandomize=True,
@@ -38,7 +38,7 @@ def test_every_answer_is_as_described(api, mode):
         @BOUNDED
         @given(case=operation.as_strategy(generation_mode=mode))
         def check(case):
-            response = case.call()
+            response = case.call(timeout=120)  # the first use of a model loads JAX
             assert response.status_code < 500
             case.validate_response(response, excluded_checks=BY_RULES)
             statuses.add(response.status_code)

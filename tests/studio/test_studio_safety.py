@@ -5,7 +5,7 @@ import json
 import re
 
 import pytest
-from asking import Client, problem
+from asking import Client, problem, raw
 
 from simulearn.studio.safety import HEADERS
 from simulearn.studio.settings import Settings
@@ -149,21 +149,8 @@ def test_files_may_be_larger_than_other_bodies():
      "/page//etc/passwd", "/page/%00", "/libraries/%2fetc%2fpasswd", "/page/"],
 )  # fmt: skip
 def test_only_files_of_the_page_are_served(client, path):
-    scope = {
-        "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "GET",
-        "path": re.sub("%(..)", lambda found: chr(int(found[1], 16)), path),
-        "raw_path": path.encode(), "root_path": "", "scheme": "http", "query_string": b"",
-        "client": None, "server": None, "headers": [(b"host", b"localhost")],
-    }  # fmt: skip
-    events = []
-
-    async def receive():
-        return {"type": "http.request", "body": b"", "more_body": False}
-
-    async def send(event):
-        events.append(event)
-
-    asyncio.run(client.app(scope, receive, send))
+    plain = re.sub("%(..)", lambda found: chr(int(found[1], 16)), path)
+    events = asyncio.run(raw(client.app, "GET", plain, [{"type": "http.request"}]))
     assert events[0]["status"] == 404
     assert json.loads(events[1]["body"])["code"] == "not-found"
 

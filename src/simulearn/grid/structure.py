@@ -5,6 +5,7 @@ those of a grid in memory, too.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from simulearn.errors import Message
 from simulearn.grid.grid import Grid
@@ -51,15 +52,22 @@ def _beam_errors(grid: Grid) -> list[Message]:
     if not len(rising) or (rising[0] >= 0 and (rising[1:] > rising[:-1]).all()):
         return []
     _, first, pair = np.unique(key, return_index=True, return_inverse=True)
+    hint = _hint(low, high, joints)
     first = first[pair]  # the first beam between the same two joints
     wrong = np.flatnonzero((key < 0) | (first != np.arange(len(first))))
     errors = []
     for k, (i, j) in zip(wrong.tolist(), grid.beams[wrong].tolist(), strict=True):
         if outside[k]:
-            code, text = "beam-index", f"joints are numbered 0 to {joints - 1}"
+            code, text = "beam-index", f"joints are numbered 0 to {joints - 1}{hint}"
         elif loop[k]:
             code, text = "beam-to-itself", "a beam joins two different joints"
         else:
             code, text = "beam-duplicate", f"beam {first[k]} joins the same two joints"
         errors.append(Message(code, f"beam {k}", f"beams[{k}] is [{i}, {j}]; {text}"))
     return errors
+
+
+def _hint(low: NDArray[np.int64], high: NDArray[np.int64], joints: int) -> str:
+    """Return what to do where the beams of all joints count them from 1."""
+    from_one = low.min() == 1 and high.max() == joints
+    return "; these count from 1: subtract 1 from every index" if from_one else ""

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
+from simulearn.errors import Cancel, stop_if
 from simulearn.files import replacing
 from simulearn.show import style
 from simulearn.show.camera import Camera
@@ -22,7 +23,12 @@ COLOURS = 192
 
 
 def animate(
-    result: Result, path: Path | str, camera: Camera = Camera(), width: float = 5.2, dpi: int = 120
+    result: Result,
+    path: Path | str,
+    camera: Camera = Camera(),
+    width: float = 5.2,
+    dpi: int = 120,
+    cancel: Cancel | None = None,
 ) -> None:
     """Write the animation of a result.
 
@@ -32,8 +38,12 @@ def animate(
         camera: where the viewer is.
         width: of the pictures, inches.
         dpi: their pixels per inch.
+        cancel: stops it within a picture.
+
+    Raises:
+        CancelledError: the token was set.
     """
-    pictures = _pictures(result, camera, width, dpi)
+    pictures = _pictures(result, camera, width, dpi, cancel)
     write_gif(pictures, [PAUSE, *[PICTURE] * (len(pictures) - 2), PAUSE], path)
 
 
@@ -57,7 +67,9 @@ def write_gif(
         )
 
 
-def _pictures(result: Result, camera: Camera, width: float, dpi: int) -> list[NDArray[np.uint8]]:
+def _pictures(
+    result: Result, camera: Camera, width: float, dpi: int, cancel: Cancel | None
+) -> list[NDArray[np.uint8]]:
     """Return the pictures, (h, w, 3) each."""
     surface = skin(result, SPACING)
     fig = Figure(figsize=(width, width), dpi=dpi)
@@ -71,6 +83,7 @@ def _pictures(result: Result, camera: Camera, width: float, dpi: int) -> list[ND
     style.ink(fig)
     pictures = []
     for moment in np.linspace(0, FRAMES - 1, BETWEEN * (FRAMES - 1) + 1):
+        stop_if(cancel)
         before = min(int(moment), FRAMES - 2)
         share = moment - before
         now = (1 - share) * surface.vertices[before] + share * surface.vertices[before + 1]

@@ -1,5 +1,6 @@
 """The studio's server: the page's files and the REST API on one address."""
 
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import cache
@@ -45,13 +46,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     """
     settings = settings or Settings()
     # Without /docs: its scripts come from another site, which the page's policy does not allow.
-    app = FastAPI(title="SimuLearn studio", openapi_url=None, lifespan=_lifespan)
+    app = FastAPI(openapi_url=None, redirect_slashes=False, lifespan=_lifespan)
     app.state.settings = settings
     app.state.simulations = Simulations(settings)
     app.state.jobs = Jobs(settings)
     app.state.documents = Documents(settings)
-    app.state.turns = Turns(2, settings.waiting)
-    app.state.exports = Turns(1, settings.waiting)
+    app.state.turns = Turns("file", 2, settings.waiting)
+    app.state.exports = Turns("export", 1, settings.waiting, settings.export_seconds)
     for router in ROUTERS:
         app.include_router(router)
     serve_page(app)
@@ -71,8 +72,16 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     simulations: Simulations = app.state.simulations
     simulations.start_warming()
     yield
-    simulations.close()
-    app.state.jobs.close()
+    stop(app)
+
+
+def stop(app: FastAPI) -> list[threading.Thread]:
+    """Stop all that an application computes; return threads that may take a while to end."""
+    state = app.state
+    threads = state.jobs.close()
+    for service in (state.simulations, state.turns, state.exports):
+        threads += service.close()
+    return threads
 
 
 def _serve_description(app: FastAPI) -> None:

@@ -6,7 +6,6 @@ its model only describes it.
 
 import json
 from collections.abc import Callable, Coroutine
-from email.message import Message as Header
 from typing import Annotated, Any
 
 from anyio import to_thread
@@ -66,13 +65,13 @@ class JsonRoute(APIRoute):
             return handle
 
         async def handle_json(request: Request) -> Response:
-            if _media_type(request) != "application/json":
+            kind = request.headers.get("content-type", "").partition(";")[0]
+            if kind.strip().lower() != "application/json":
                 text = "the body is JSON; its Content-Type is application/json"
                 raise Problem(415, "content-type", text, "Content-Type")
-            if not await request.body():
-                raise Problem(400, "json", "the body is empty; it is a JSON object", "body")
             strict = _StrictRequest(request.scope, request.receive)
-            strict._body = request._body
+            if not await strict.body():
+                raise Problem(400, "json", "the body is empty; it is a JSON object", "body")
             return await handle(strict)
 
         return handle_json
@@ -102,9 +101,3 @@ def _parsed(body: bytes) -> Any:
         raise Problem(400, "json", text, f"byte {error.start}") from error
     except InputError as error:
         raise Problem(400, error.code, f"the body {error}", error.where) from error
-
-
-def _media_type(request: Request) -> str:
-    header = Header()
-    header["content-type"] = request.headers.get("content-type", "")
-    return header.get_content_type()

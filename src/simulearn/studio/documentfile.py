@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from simulearn.errors import InputError
 from simulearn.grid.arrays import shown
-from simulearn.grid.structure import FARTHEST
+from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
 from simulearn.material.material import is_name
 
 SCHEMA = "simulearn.document/1"
-MOST_JOINTS, MOST_BEAMS, MOST_GOALS = 5000, 10_000, 5000  # far beyond what is simulated here
+MOST_GOALS = 1000
 SECTIONS = ("start", "middle", "end")
 
 Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]

@@ -23,7 +23,6 @@ from simulearn.studio.settings import Settings
 SCHEMA = "simulearn.saved/1"
 NAME = re.compile(r"[A-Za-z0-9_-]{22}")
 MOST_BYTES = 2**30  # of all documents
-MARGIN = 2**10  # bytes of a file besides its document
 LOCK = ".lock"
 
 
@@ -78,7 +77,7 @@ class Documents:
         _checked(name)
         check_document(document)
         most = self._settings.document_bytes
-        if len(_text(Saved(revision, document))) > most + MARGIN:
+        if len(json.dumps(document)) > most:
             text = (
                 f"the document is too large to be saved here; it has at most {most / 2**20:g} MiB"
             )
@@ -160,7 +159,7 @@ class _Folder:
         try:
             return read_text(path)
         except InputError as error:
-            if isinstance(error.__cause__, FileNotFoundError):
+            if isinstance(error.__cause__, FileNotFoundError | NotADirectoryError):
                 return None
             raise Problem(500, "document-damaged", str(error), "id") from error
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from simulearn import outputs
-from simulearn.errors import InputError
+from simulearn.errors import Cancel, InputError
 from simulearn.simulate import Result
 
 # Matplotlib is made for one thread; others wait for their turn.
@@ -38,7 +38,9 @@ def check_format(ending: str) -> None:
             raise InputError(reason, "format-missing", "format") from error
 
 
-def exported(result: Result, ending: str, stem: str) -> tuple[bytes, str, str]:
+def exported(
+    result: Result, ending: str, stem: str, cancel: Cancel | None = None
+) -> tuple[bytes, str, str]:
     """Return a file of a result: its contents, name and media type.
 
     Several files become one ZIP archive.
@@ -47,16 +49,18 @@ def exported(result: Result, ending: str, stem: str) -> tuple[bytes, str, str]:
         result: what to write.
         ending: one of `outputs.WRITERS`.
         stem: name of the file without its ending, safe on every system.
+        cancel: stops an animation, which takes by far the longest.
 
     Raises:
         InputError: the disk is full.
+        CancelledError: the token was set.
     """
     with TemporaryDirectory(prefix="simulearn-") as folder:
         several = ending in SEVERAL
         # Where the files name one another, their names are what the person wants.
         path = Path(folder) / f"{stem if several else 'result'}{ending}"
         with _drawing:
-            outputs.write(result, path)
+            outputs.write(result, path, cancel)
         data = _zipped(Path(folder)) if several else path.read_bytes()
     ending = ".zip" if several else ending
     return data, f"{stem}{ending}", TYPES.get(ending, "application/octet-stream")

@@ -161,7 +161,6 @@ class Jobs:
         self._line: deque[Job] = deque()
         self._threads: set[threading.Thread] = set()
         self._lock = threading.Lock()
-        self._closed = False
 
     def start(self, kind: str, work: Work) -> Job:
         """Begin a job, or put it in line.
@@ -172,7 +171,8 @@ class Jobs:
         job = Job(kind, work, self._settings.job_seconds, self._now)
         with self._lock:
             self._tidy()
-            if self._closed or len(self._line) >= self._settings.jobs_waiting:
+            busy = sum(not job.finished for job in self._jobs.values())
+            if busy >= self._settings.job_workers + self._settings.jobs_waiting:
                 raise Problem(
                     429,
                     "too-many-jobs",
@@ -215,25 +215,17 @@ class Jobs:
             self._tidy()
         return job
 
-    def close(self, wait: float = 0.0) -> bool:
-        """Stop all jobs and take no more.
-
-        Args:
-            wait: s for running ones to end.
+    def close(self) -> list[threading.Thread]:
+        """Stop all jobs; the same application may be started again.
 
         Returns:
-            Whether all have ended.
+            Threads that may take a while to end.
         """
         with self._lock:
-            self._closed = True
             for job in self._jobs.values():
                 job.stop()
             self._tidy()
-            threads = list(self._threads)
-        deadline = monotonic() + wait
-        for thread in threads:
-            thread.join(max(0.0, deadline - monotonic()))
-        return not any(thread.is_alive() for thread in threads)
+            return list(self._threads)
 
     def _compute(self) -> None:
         """Run jobs until none is waiting."""

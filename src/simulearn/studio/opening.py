@@ -48,7 +48,7 @@ def opened(data: bytes, name: str) -> dict[str, Any]:
         name: of the file; it names a design that has no name of its own.
 
     Returns:
-        kind (grid, task, result or document), name, grid, goals, printer (empty if the file names
+        kind (grid, task, result or document), name, grid, goals, printer (None if the file names
         none), and messages about what was not taken over.
 
     Raises:
@@ -60,7 +60,7 @@ def opened(data: bytes, name: str) -> dict[str, Any]:
     except InputError as error:
         file = stem or "the file"
         raise InputError(f"{file}: {error}", error.code, error.where, error.messages) from error
-    check_document({"schema": DOCUMENT, **{k: parts[k] for k in ("grid", "goals", "printer")}})
+    check_document({"schema": DOCUMENT, "grid": parts["grid"], "goals": parts["goals"]})
     messages = [asdict(message) for message in parts["messages"]]
     return {**parts, "name": parts["name"] or stem, "messages": messages}
 
@@ -96,7 +96,7 @@ def _parts(data: Any) -> dict[str, Any]:
     if schema != known:
         text = f'schema is "{schema}"; this version reads "{known}"'
         raise InputError(text, "file-version", "schema")
-    parts: dict[str, Any] = {"name": "", "goals": [], "printer": "", "messages": []}
+    parts: dict[str, Any] = {"name": "", "goals": [], "printer": None, "messages": []}
     return parts | read(data)
 
 
@@ -129,7 +129,7 @@ def _of_task(data: Any) -> dict[str, Any]:
 
 def _of_document(data: Any) -> dict[str, Any]:
     check_document(data)
-    optional = {key: data[key] for key in ("name", "printer") if key in data}
+    optional = {key: data[key] for key in ("name", "printer") if data.get(key)}
     return {
         "kind": "document",
         "grid": data["grid"],

@@ -9,17 +9,16 @@ import ipaddress
 import os
 import signal
 import socket
-import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from time import monotonic
-from typing import Any
 
 import uvicorn
+from fastapi import FastAPI
 
 from simulearn.errors import InputError
-from simulearn.studio.app import create_app
+from simulearn.studio.app import create_app, stop
 from simulearn.studio.settings import Settings
 
 HOST = "127.0.0.1"
@@ -57,10 +56,10 @@ def serve(
             ws="none",
             timeout_graceful_shutdown=int(WAIT),
         )
-        server = _Server(config, on_start)
+        server = _Server(app, config, on_start)
         with _ending_quietly():
             server.run(sockets=[listener])
-    return _ended(app)
+    return _have_ended(server.computing)
 
 
 def listen(host: str = HOST, port: int | None = None) -> socket.socket:
@@ -102,9 +101,12 @@ def is_local(listener: socket.socket) -> bool:
 class _Server(uvicorn.Server):
     """A server that says when it answers, and stops computations before it waits for requests."""
 
-    def __init__(self, config: uvicorn.Config, on_start: Callable[[], None] | None) -> None:
+    def __init__(
+        self, app: FastAPI, config: uvicorn.Config, on_start: Callable[[], None] | None
+    ) -> None:
         super().__init__(config)
-        self._on_start = on_start
+        self._app, self._on_start = app, on_start
+        self.computing: list[threading.Thread] = []  # what could not be stopped at once
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         await super().startup(sockets)
@@ -112,9 +114,7 @@ class _Server(uvicorn.Server):
             self._on_start()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        state = self.config.app.state  # type: ignore[union-attr]
-        state.jobs.close()
-        state.simulations.close()
+        self.computing = stop(self._app)
         await super().shutdown(sockets)
 
 
@@ -164,12 +164,9 @@ def _ending_quietly() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _ended(app: Any) -> bool:
-    """Wait a moment for computations to end, and return whether they have."""
+def _have_ended(threads: Collection[threading.Thread]) -> bool:
+    """Wait a moment for threads to end, and return whether they have."""
     deadline = monotonic() + WAIT
-    ended: bool = app.state.jobs.close(WAIT)
-    ours = [t for t in threading.enumerate() if t.name.startswith(("simulation", "AnyIO"))]
-    for thread in ours:
+    for thread in threads:
         thread.join(max(0.0, deadline - monotonic()))
-    sys.stdout.flush()
-    return ended and not any(thread.is_alive() for thread in ours)
+    return not any(thread.is_alive() for thread in threads)

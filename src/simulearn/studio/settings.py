@@ -1,7 +1,9 @@
 """What the operator of a studio decides: who may ask, where documents lie, and limits."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+from simulearn.files import cores
 
 
 @dataclass(frozen=True)
@@ -26,9 +28,10 @@ class Settings:
         rank_beams: of a grid whose modifications are ranked.
         simulations: computed at the same time.
         waiting: requests that may wait for one of them.
-        job_workers: jobs computed at the same time.
+        job_workers: jobs computed at the same time; each may use more than one core.
         jobs_waiting: jobs that may wait.
         job_seconds: longest time of a job.
+        export_seconds: longest time to write a file, for those that can be stopped.
     """
 
     hosts: tuple[str, ...] = ()
@@ -45,6 +48,7 @@ class Settings:
     rank_beams: int = 100
     simulations: int = 2
     waiting: int = 32
-    job_workers: int = 2
+    job_workers: int = field(default_factory=lambda: max(1, cores() // 2))
     jobs_waiting: int = 20
     job_seconds: float = 600.0
+    export_seconds: float = 120.0

@@ -1,25 +1,23 @@
-"""Simulations that a request waits for: a few at a time in threads, a bounded number in line.
+"""The engines of a server, made ready once, and the simulations that requests wait for.
 
 The kernels run without the interpreter's lock, so that threads use all cores and the server goes on
-to answer. A simulation ends early when the client that wants it has gone.
+to answer.
 """
 
-import asyncio
 import logging
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 from fastapi import Request
 
-from simulearn.errors import Cancel, CancelledError, InputError
+from simulearn.errors import Cancel, InputError, stop_if
 from simulearn.learn.common.bundle import shipped
 from simulearn.simulate import engine
 from simulearn.simulate.engines import ENGINES, StreamingSimulator
-from simulearn.studio.problems import too_many
 from simulearn.studio.settings import Settings
+from simulearn.studio.turns import Turns
 
 T = TypeVar("T")
 
@@ -36,10 +34,7 @@ class Simulations:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self._threads = settings.simulations
-        self._pool = self._new_pool()
-        self._most = settings.simulations + settings.waiting
-        self._tokens: set[threading.Event] = set()  # of all that run or wait
+        self._turns = Turns("simulation", settings.simulations, settings.waiting)
         self._warming, self._warm = threading.Lock(), threading.Event()
 
     @property
@@ -64,57 +59,17 @@ class Simulations:
             self._warm.set()
 
     async def run(self, request: Request, work: Callable[[Cancel], T]) -> T:
-        """Return what work returns; it runs in a thread when its turn comes.
+        """Return what work returns; see `Turns.run`. Kernels are compiled before."""
+        return await self._turns.run(request, partial(self._work, work))
 
-        Args:
-            request: that waits for it.
-            work: takes a token that is set when nobody waits any more.
+    def close(self) -> list[threading.Thread]:
+        """Stop what runs and waits; see `Turns.close`."""
+        return self._turns.close()
 
-        Raises:
-            Problem: too many are waiting.
-            CancelledError: the client has gone.
-        """
-        if len(self._tokens) >= self._most:
-            raise too_many("too many simulations are waiting; try again in a moment")
-        cancel = threading.Event()
-        self._tokens.add(cancel)
-        running = self._pool.submit(self._work, work, cancel)
-        # A thread that cannot stop at once counts until it has stopped.
-        running.add_done_callback(lambda _: self._tokens.discard(cancel))
-        answer = asyncio.wrap_future(running)
-        gone = asyncio.create_task(_disconnected(request))
-        try:
-            await asyncio.wait((answer, gone), return_when=asyncio.FIRST_COMPLETED)
-            if not answer.done():
-                raise CancelledError("the client has gone")
-            return answer.result()
-        finally:
-            gone.cancel()
-            if not answer.done():
-                cancel.set()
-                answer.cancel()
-
-    def close(self) -> None:
-        """Stop what runs and waits; the same application may be started again."""
-        pool, self._pool = self._pool, self._new_pool()
-        for token in list(self._tokens):
-            token.set()
-        pool.shutdown(wait=False, cancel_futures=True)
-
-    def _new_pool(self) -> ThreadPoolExecutor:
-        return ThreadPoolExecutor(self._threads, "simulation")
-
-    def _work(self, work: Callable[[Cancel], T], cancel: threading.Event) -> T:
+    def _work(self, work: Callable[[Cancel], T], cancel: Cancel) -> T:
         self.warm()
-        if cancel.is_set():
-            raise CancelledError("cancelled")
+        stop_if(cancel)
         return work(cancel)
-
-
-async def _disconnected(request: Request) -> None:
-    """Return when the client has closed the connection."""
-    while (await request.receive())["type"] != "http.disconnect":
-        pass
 
 
 def engine_of(name: str, model: str | None = None) -> StreamingSimulator:

@@ -54,7 +54,7 @@ const WRONG = [
   [(one, g) => void (g.actuators[1] = null), /actuators\[1\] is null/],
   [(one, g) => void (g.fixed = 4), /fixed is 4; it is the number of a joint/],
   [(one, g) => void (g.material = 7), /material is 7/],
-  [(one) => void (one.goals[0].vertex = ["joint", 4, 0]), /goals\[0\].vertex is \["joint",4,0\]; the grid has/],
+  [(one) => void (one.goals[0].vertex = ["joint", 4, 0]), /goals\[0\].vertex is \["joint",4,0\]; /],
   [(one) => void (one.goals[0].vertex = "joint"), /goals\[0\].vertex is "joint"/],
   [(one) => void (one.goals[0].target = [1, 2]), /goals\[0\].target is \[1,2\]; a target is/],
   [(one) => void (one.goals[0].weight = -1), /goals\[0\].weight is -1/],

@@ -29,6 +29,8 @@ export const state = shallowReactive({
   pointer: null, // [x, y] in mm under the pointer, where the plan gives it
   dialog: null, // { name, ... }: the open dialog and what it is about
   pickVertex: null, // function: the shape view calls it with the vertex that is picked next
+  suggestions: null, // { document, state, error, cards, problem }: single changes; see service/suggestions.js
+  search: null, // { document, state, steps, result, ... }: the automatic search; see service/search.js
   notices: [], // [{ id, text, action: { label, run } | null }]: short confirmations
 });
 

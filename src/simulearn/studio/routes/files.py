@@ -42,7 +42,7 @@ class OpenedFile(BaseModel):
     name: str
     grid: Drawing
     goals: list[DocumentGoal]
-    printer: Annotated[str, Field(description="empty if the file names none")]
+    printer: str | None
     messages: list[MessageBody]
 
 
@@ -65,7 +65,7 @@ async def open_(
     """Read a grid, a task, a result or a document, known by its contents."""
     turns: Turns = request.app.state.turns
     data = await request.body()
-    return await turns.run(lambda: json_response(opened(data, name)))
+    return await turns.run(request, lambda _: json_response(opened(data, name)))
 
 
 @router.post("/api/export", response_class=Response, responses=BUSY | FILE)
@@ -81,7 +81,8 @@ async def export(body: ExportBody, request: Request) -> Response:
         check_fea([grid], state.settings)
     result = await simulations.run(request, partial(_simulated, grid, body.engine))
     stem = safe_stem(body.name)
-    data, file, kind = await exports.run(lambda: exported(result, body.format, stem))
+    work = partial(exported, result, body.format, stem)
+    data, file, kind = await exports.run(request, work)
     return Response(data, media_type=kind, headers=attachment(file))
 
 

@@ -85,7 +85,7 @@ async def gcode(body: ToolpathBody, request: Request) -> Response:
     state = request.app.state
     turns: Turns = state.turns
     plain = MEDIA_TYPE in request.headers.get("accept", "")
-    return await turns.run(lambda: _gcode(body, state.settings, plain))
+    return await turns.run(request, lambda _: _gcode(body, state.settings, plain))
 
 
 @router.post("/api/toolpath", response_model=ToolpathAnswer, responses=BUSY)
@@ -93,7 +93,7 @@ async def toolpath(body: ToolpathBody, request: Request) -> Response:
     """Return the strokes of a print, layer by layer, to be drawn."""
     state = request.app.state
     turns: Turns = state.turns
-    return await turns.run(lambda: _toolpath(body, state.settings))
+    return await turns.run(request, lambda _: _toolpath(body, state.settings))
 
 
 def _gcode(body: ToolpathBody, settings: Settings, plain: bool) -> Response:

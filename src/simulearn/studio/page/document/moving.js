@@ -78,18 +78,25 @@ export function scale(document, factor) {
  * The end with fewer beams moves, of two alike the one farther from the fixed joint, which stays.
  */
 export function setBeamLength(document, b, length) {
-  const { joints, beams, fixed } = document.grid;
+  const { joints, beams } = document.grid;
   if (!(b in beams) || !isNumber(length) || length <= 0 || length > FARTHEST) return document;
   const [i, j] = beams[b];
-  const valence = (k) => beams.filter((ends) => ends.includes(k)).length;
-  const away = (k) => distance(joints[k], joints[fixed]);
-  let moves = valence(i) === valence(j) ? (away(i) > away(j) ? i : j) : (valence(i) < valence(j) ? i : j);
-  if (moves === fixed) moves = i === fixed ? j : i;
+  const moves = freer(document.grid, i, j);
   const stays = moves === i ? j : i;
   const [p, q] = [joints[stays], joints[moves]];
   const now = distance(p, q);
   if (Math.abs(now - length) < SAME) return document;
   return placeJoint(document, moves, now > 0 ? between(p, q, length / now) : [p[0] + length, p[1]]);
+}
+
+/** Return which of two joints may rather move. */
+function freer({ joints, beams, fixed }, i, j) {
+  if (i === fixed || j === fixed) return i === fixed ? j : i;
+  const valence = (k) => beams.filter((ends) => ends.includes(k)).length;
+  const more = valence(i) - valence(j);
+  if (more !== 0) return more > 0 ? j : i;
+  const away = (k) => distance(joints[k], joints[fixed]);
+  return away(i) > away(j) ? i : j;
 }
 
 /** Return the document with joints at map(place); itself where nothing moves or a place is none.

@@ -19,9 +19,10 @@ export function weave(joints, pieces, active, used, tolerance) {
       if (point) met.add(jointAt(joints, point, tolerance));
     }
   const cuts = new Map();
+  const [all, some] = [[...joints.keys()], [...met]];
   pieces.forEach(({ ends }, b) => {
-    const candidates = active.has(b) ? joints.keys() : met;
-    const found = jointsOn(joints, ends, grown(boxes[b], tolerance), candidates, tolerance);
+    const box = grown(boxes[b], tolerance);
+    const found = jointsOn(joints, ends, box, active.has(b) ? all : some, tolerance);
     if (found.length) cuts.set(b, found);
   });
   return cut(pieces, cuts);

@@ -11,6 +11,12 @@ import { ratioWords } from "./parts.js";
 const USUAL = 0.5; // ratio that a passive beam gets when a half is chosen
 const QUARTER = 25; // %
 
+/** Return the bar from the middle of the track to a ratio. */
+const fill = (ratio) => h("span", {
+  class: ["ratio-fill", ratio > 0 ? "top" : "bottom"],
+  style: { left: `${50 + 50 * Math.min(0, ratio)}%`, width: `${50 * Math.abs(ratio)}%` },
+});
+
 export const Actuator = {
   props: { beams: Array },
   setup: (props) => () => {
@@ -19,7 +25,8 @@ export const Actuator = {
     const ratio = ratios.every((r) => r === ratios[0]) ? ratios[0] : null;
     const sides = ratios.map(Math.sign);
     const side = sides.every((s) => s === sides[0]) ? sides[0] : null;
-    const label = t(beams.length === 1 ? "common.didRatio" : "common.didRatios", { b: beams[0], n: beams.length });
+    const label = beams.length === 1
+      ? t("common.didRatio", { b: beams[0] }) : t("common.didRatios", { n: beams.length });
     const set = (value, merge = null) => {
       edit((document) => setActuators(document, beams, value), { label, merge });
       if (merge === null) endMerge();
@@ -42,10 +49,13 @@ export const Actuator = {
       h("div", { class: "ratio" }, [
         iconButton("minus", t("common.ratioLess"), () => step(-1), { disabled: ratio === -1 }),
         h("div", { class: "ratio-track" }, [
+          ratio !== null && h("div", { class: "ratio-inner" }, [fill(ratio)]),
           h("input", {
             type: "range", min: -100, max: 100, step: QUARTER, value: ratio === null ? 0 : 100 * ratio,
-            "aria-label": t("common.ratio"), "aria-valuetext": ratio === null ? t("common.various") : ratioWords(ratio),
-            onInput: (event) => set(Number(event.target.value) / 100, `ratio ${beams.join()}`), onChange: endMerge,
+            "aria-label": t("common.ratio"),
+            "aria-valuetext": ratio === null ? t("common.various") : ratioWords(ratio),
+            onInput: (event) => set(Number(event.target.value) / 100, `ratio ${beams.join()}`),
+            onChange: endMerge,
           }),
         ]),
         iconButton("plus", t("common.ratioMore"), () => step(1), { disabled: ratio === 1 }),

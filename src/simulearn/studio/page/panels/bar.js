@@ -2,11 +2,12 @@
 
 import { h } from "/libraries/vue.js";
 import { chooseFile, copyLink, saveFile } from "../service/files.js";
-import { newDocument, saveNow, showConflict } from "../service/saving.js";
+import { newDocument } from "../service/saving.js";
 import { edit, endMerge, notify, redo, state, undo, view } from "../store.js";
 import { LANGUAGES, t } from "../text/text.js";
 import { Menu, button, iconButton } from "./controls.js";
-import { useMedia } from "./media.js";
+import { NARROW, useMedia } from "./media.js";
+import { savingState } from "./status.js";
 import { PaneSwitch } from "./views.js";
 
 const logo = () => h("svg", {
@@ -32,14 +33,6 @@ const name = () => h("input", {
     if (event.key === "Enter" || event.key === "Escape") event.target.blur();
   },
 });
-
-/** Return the state of saving in words; where something is to be done about it, a button. */
-function saving() {
-  const text = t(`common.saving_${state.saving}`);
-  const run = { failed: saveNow, offline: saveNow, conflict: showConflict }[state.saving];
-  if (!run) return h("span", { class: "saving" }, text);
-  return h("button", { type: "button", class: ["saving", state.saving], title: t(`common.savingDo_${state.saving}`), onClick: run }, text);
-}
 
 const step = (glyph, last, key, run) => iconButton(glyph, last
   ? t(`common.${key}`, { what: last.label }) : t(`common.${key}None`), run, { disabled: !last });
@@ -80,13 +73,13 @@ const settings = () => [
 
 export const Bar = {
   setup() {
-    const narrow = useMedia("(max-width: 899px)");
+    const narrow = useMedia(NARROW);
     return () => h("header", { class: "bar" }, [
       h("div", { class: "bar-part" }, [
         h("a", { class: "brand", href: "/", title: t("common.studio"), "aria-label": t("common.studio") },
           [logo(), h("span", { class: "wordmark" }, "SimuLearn")]),
         name(),
-        saving(),
+        savingState(),
       ]),
       !narrow.value && h(PaneSwitch, { compact: true }),
       h("div", { class: "bar-part end" }, [
@@ -94,8 +87,8 @@ export const Bar = {
         step("redo", state.history.future.at(-1), "redo", redo),
         narrow.value ? iconButton("library", t("common.library"), dialog("library"))
           : button(t("common.library"), dialog("library"), { glyph: "library", kind: "quiet" }),
-        h(Menu, { label: t("common.file"), glyph: "file", items: files(), iconOnly: narrow.value, end: true }),
-        h(Menu, { label: t("common.settings"), glyph: "settings", items: settings(), iconOnly: true, end: true }),
+        h(Menu, { label: t("common.file"), glyph: "file", items: files(), iconOnly: narrow.value }),
+        h(Menu, { label: t("common.settings"), glyph: "settings", items: settings(), iconOnly: true }),
         iconButton("help", t("common.help"), dialog("help"), { class: "icon-button wide-only" }),
       ]),
     ]);

@@ -63,7 +63,7 @@ export const Segmented = {
  * `checked` is one of a choice and leaves the menu open.
  */
 export const Menu = {
-  props: { label: String, glyph: String, items: Array, end: Boolean, iconOnly: Boolean },
+  props: { label: String, glyph: String, items: Array, iconOnly: Boolean },
   setup(props) {
     const open = ref(false);
     const root = ref(null);
@@ -106,7 +106,8 @@ export const Menu = {
     };
     const entry = (item, i) => {
       if (item === "-") return h("div", { key: i, role: "separator", class: "menu-line" });
-      if (item.heading) return h("div", { key: i, class: "menu-heading", role: "presentation" }, item.heading);
+      if (item.heading)
+        return h("div", { key: i, class: "menu-heading", role: "presentation" }, item.heading);
       const choice = item.checked !== undefined;
       return h("button", {
         key: i, type: "button", role: choice ? "menuitemradio" : "menuitem", tabindex: -1,
@@ -122,13 +123,14 @@ export const Menu = {
     return () => h("div", { class: "menu-root", ref: root, onKeydown }, [
       h("button", {
         type: "button", class: props.iconOnly ? "icon-button" : "button quiet",
-        "aria-label": props.iconOnly ? props.label : undefined, title: props.iconOnly ? props.label : undefined,
+        "aria-label": props.iconOnly ? props.label : undefined,
+        title: props.iconOnly ? props.label : undefined,
         "aria-haspopup": "menu", "aria-expanded": String(open.value),
         onClick: () => (open.value ? close() : show()),
       }, props.iconOnly ? [icon(props.glyph)] : [
         icon(props.glyph, 18), h("span", props.label), icon("chevron", 14),
       ]),
-      open.value && h("div", { class: ["menu", { end: props.end }], role: "menu", "aria-label": props.label },
+      open.value && h("div", { class: "menu", role: "menu", "aria-label": props.label },
         props.items.map(entry)),
     ]);
   },

@@ -6,5 +6,7 @@ import { Outline } from "./outline.js";
 import { Warnings } from "./problems.js";
 
 export const Design = {
-  render: () => h("div", { class: "design" }, [h(Inspector), h(Warnings), h(Outline)]),
+  render: () => h("div", { class: "design" }, [
+    h("div", { class: "design-top" }, [h(Inspector)]), h(Warnings), h(Outline),
+  ]),
 };

@@ -16,11 +16,15 @@ export const Dialog = {
   setup(props, { slots }) {
     const root = ref(null);
     const id = useId();
+    const own = state.dialog;
+    const onClose = () => {
+      if (state.dialog === own) close(); // not the one that has taken its place
+    };
     onMounted(() => root.value.showModal());
     onBeforeUnmount(() => root.value.close());
     return () => h("dialog", {
       ref: root, class: ["dialog", props.kind], "aria-labelledby": id,
-      onClose: close,
+      onClose,
       onClick: (event) => event.target === root.value && close(), // beside it
     }, [
       h("div", { class: "dialog-frame" }, [

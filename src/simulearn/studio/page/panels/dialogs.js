@@ -10,7 +10,8 @@ import { HelpDialog } from "./help.js";
 import { LibraryDialog } from "./library.js";
 import { Dialog, close } from "./dialog.js";
 
-const SHOWN = 6000; // ms that a confirmation stays
+const SHOWN = 5000; // ms that a confirmation stays
+const OFFERED = 12_000; // ms where something can be done about it
 
 const MessageDialog = {
   props: { title: String, text: String, messages: Array },
@@ -67,9 +68,17 @@ const DIALOGS = {
 };
 
 export const Dialogs = {
-  render() {
-    const { name, ...props } = state.dialog ?? {};
-    return name ? h(DIALOGS[name], { key: name, ...props }) : null;
+  setup() {
+    let shown = null;
+    let key = 0; // another dialog of the same kind is a new one
+    return () => {
+      if (state.dialog !== shown) {
+        shown = state.dialog;
+        key += 1;
+      }
+      const { name, ...props } = shown ?? {};
+      return name ? h(DIALOGS[name], { key, ...props }) : null;
+    };
   },
 };
 
@@ -77,13 +86,15 @@ const Notice = {
   props: { notice: Object },
   setup(props) {
     let timer = 0;
-    const start = () => { timer = setTimeout(() => dismiss(props.notice.id), SHOWN); };
+    const { id, action } = props.notice;
+    const start = () => { timer = setTimeout(() => dismiss(id), action ? OFFERED : SHOWN); };
     const stop = () => clearTimeout(timer);
     onMounted(start);
     onBeforeUnmount(stop);
     return () => {
-      const { id, text, action } = props.notice;
-      return h("div", { class: "notice", onPointerenter: stop, onPointerleave: start, onFocusin: stop, onFocusout: start }, [
+      const { text } = props.notice;
+      const pause = { onPointerenter: stop, onPointerleave: start, onFocusin: stop, onFocusout: start };
+      return h("div", { class: "notice", ...pause }, [
         h("p", text),
         action && button(action.label, () => {
           dismiss(id);

@@ -43,13 +43,17 @@ export const ExportDialog = {
       default: () => [
         h("fieldset", { class: "choices" }, [
           h("legend", t("common.format")),
-          (state.server?.formats ?? []).map((one) =>
-            choice("format", format, one, one.slice(1).toUpperCase(), words(`common.format_${one.slice(1)}`))),
+          (state.server?.formats ?? []).map((one) => {
+            const name = one.slice(1);
+            return choice("format", format, one, name.toUpperCase(), words(`common.format_${name}`));
+          }),
         ]),
         h("fieldset", { class: "choices" }, [
           h("legend", t("common.engine")),
-          (state.server?.engines ?? []).map((one) =>
-            choice("engine", engine, one, words(`common.engine_${one}`) || one, words(`common.engineFor_${one}`))),
+          (state.server?.engines ?? []).map((one) => {
+            const name = words(`common.engine_${one}`) || one;
+            return choice("engine", engine, one, name, words(`common.engineFor_${one}`));
+          }),
         ]),
         error.value && h("p", { class: "dialog-error", role: "alert" }, error.value),
       ],

@@ -2,7 +2,7 @@
 
 import { h, ref, useId } from "/libraries/vue.js";
 import { view } from "../store.js";
-import { formatNumber, parseNumber } from "../text/numbers.js";
+import { editableNumber, formatNumber, parseNumber } from "../text/numbers.js";
 import { t } from "../text/text.js";
 
 const DIGITS = 3; // thousandths of a mm: finer than any print
@@ -23,12 +23,14 @@ export const NumberField = {
     const id = useId();
     const text = ref(null); // while it is edited
     const error = ref("");
-    const shown = () => (props.value === null ? "" : formatNumber(props.value, view.language, props.digits));
+    const shown = () => (
+      props.value === null ? "" : editableNumber(props.value, view.language, props.digits)
+    );
     const wrong = (value) => {
       if (value === null) return t("common.notNumber");
       const outside = value < props.least || value > props.most;
-      const range = { least: formatNumber(props.least, view.language), most: formatNumber(props.most, view.language) };
-      return outside ? t("common.outside", range) : "";
+      const [least, most] = [props.least, props.most].map((limit) => formatNumber(limit, view.language));
+      return outside ? t("common.outside", { least, most }) : "";
     };
     const take = (value, merge = null) => {
       error.value = wrong(value);

@@ -25,15 +25,18 @@ function change(apply, label, merge = null) {
 }
 
 function remove(parts) {
-  const count = parts.joints.length + parts.beams.length;
-  edit((document) => removeParts(document, parts), { label: t("common.didDelete", { count }) });
+  edit((document) => removeParts(document, parts), { label: t("common.didDelete") });
   select({});
 }
 
-const panel = (title, note, children) => h("section", { class: "inspector", "aria-label": t("common.properties") }, [
-  h("div", { class: "inspector-head" }, [h("h2", title), note && h("span", { class: "badge" }, note)]),
-  ...children,
-]);
+function panel(title, note, children) {
+  return h("section", { class: "inspector", "aria-label": t("common.properties") }, [
+    h("div", { class: "inspector-head" }, [h("h2", title), note && h("span", { class: "badge" }, note)]),
+    ...children,
+  ]);
+}
+
+const deleteButton = (parts) => button(t("common.delete"), () => remove(parts), { glyph: "trash", kind: "danger" });
 
 function joint(k) {
   const { grid } = state.document;
@@ -47,6 +50,7 @@ function joint(k) {
     key: `${k}${name}`, label: name, name: `${name} ${t("common.ofJoint", { k })}`, unit: "mm",
     value: grid.joints[k][axis], commit: place(axis), merge: `place ${k} ${axis}`,
   });
+  const fix = () => change((document) => setFixed(document, k), t("common.didFix", { k }));
   const end = result && vertexPoint(result, ["joint", k, "centre"]);
   const beams = beamsAt(grid, k);
   return panel(t("common.joint", { k }), k === grid.fixed && t("common.fixed"), [
@@ -56,9 +60,8 @@ function joint(k) {
       [t("common.beams"), beams.length ? beams.join(", ") : t("common.none")],
     ]),
     h("div", { class: "row" }, [
-      button(t("common.makeFixed"), () => change((document) => setFixed(document, k), t("common.didFix", { k })),
-        { glyph: "pin", disabled: k === grid.fixed }),
-      button(t("common.delete"), () => remove({ joints: [k], beams: [] }), { glyph: "trash", kind: "danger" }),
+      button(t("common.makeFixed"), fix, { glyph: "pin", disabled: k === grid.fixed }),
+      deleteButton({ joints: [k], beams: [] }),
     ]),
   ]);
 }
@@ -67,9 +70,11 @@ function beam(b) {
   const { grid } = state.document;
   const [i, j] = grid.beams[b];
   const net = state.check?.document.grid === grid ? state.check.netLengths?.[b] : null;
+  const split = () => change((document) => splitBeam(document, b), t("common.didSplit", { b }));
   return panel(t("common.beam", { b }), t("common.between", { i, j }), [
     h(NumberField, {
-      key: b, label: t("common.length"), name: `${t("common.length")} ${t("common.ofBeam", { b })}`, unit: "mm",
+      key: b, label: t("common.length"), name: `${t("common.length")} ${t("common.ofBeam", { b })}`,
+      unit: "mm",
       value: beamLength(grid, b), least: 1, most: 1e4, merge: `length ${b}`,
       commit: (value, merge) => change((document) => setBeamLength(document, b, value),
         t("common.didLength", { b }), merge),
@@ -77,9 +82,8 @@ function beam(b) {
     h(Actuator, { beams: [b] }),
     net != null && facts([[t("common.netLength"), `${mm(net)} mm`]]),
     h("div", { class: "row" }, [
-      button(t("common.split"), () => change((document) => splitBeam(document, b), t("common.didSplit", { b })),
-        { glyph: "split" }),
-      button(t("common.delete"), () => remove({ joints: [], beams: [b] }), { glyph: "trash", kind: "danger" }),
+      button(t("common.split"), split, { glyph: "split" }),
+      deleteButton({ joints: [], beams: [b] }),
     ]),
   ]);
 }
@@ -93,9 +97,13 @@ function several({ joints, beams }) {
     beams.length > 0 && h(Actuator, { beams }),
     h(Transform, { selection: { joints, beams } }),
     h("div", { class: "row" }, [
-      button(t("common.delete"), () => remove({ joints, beams }), { glyph: "trash", kind: "danger" }),
+      deleteButton({ joints, beams }),
     ]),
   ]);
+}
+
+function heights({ lowest_mm: from, highest_mm: to }) {
+  return t("common.fromTo", { from: mm(from), to: mm(to) });
 }
 
 function grid() {
@@ -108,7 +116,7 @@ function grid() {
       [t("common.beams"), beams.length],
       box && [t("common.size"), `${mm(box.width)} × ${mm(box.height)} mm`],
       result && [t("common.dimension"), `${mm(result.dimension_mm)} mm`],
-      result && [t("common.rise"), `${mm(result.rise_mm)} mm`],
+      result && [t("common.heights"), heights(result)],
       [t("common.material"), state.material?.title ?? state.document.grid.material],
     ]),
     joints.length > 0 && h(Transform, { selection: null }),

@@ -6,7 +6,7 @@ import { thumbnail } from "../shape/thumbnail.js";
 import { simulate } from "../service/api.js";
 import { place } from "../service/files.js";
 import { loadLibrary } from "../service/server.js";
-import { state, view } from "../store.js";
+import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { Dialog, close } from "./dialog.js";
 import { icon } from "./icons.js";
@@ -30,11 +30,18 @@ async function draw() {
   }
 }
 
-function use({ name, description, grid }) {
+/** Return a design's description in the page's language, where there is one. */
+function words({ name, description }) {
+  const key = `common.design_${name}`;
+  const text = t(key);
+  return text === key ? description : text;
+}
+
+function use({ name, grid }) {
   const { material } = state.document.grid;
   close();
   place({ ...emptyDocument(), name, grid: { ...grid, material }, printer: state.document.printer },
-    t("common.didLibrary", { name, description }));
+    t("common.didLibrary", { name }));
 }
 
 export const LibraryDialog = {
@@ -55,9 +62,7 @@ export const LibraryDialog = {
               ? [h("img", { src: pictures[design.name], alt: "", width: 160, height: 100 })]
               : [icon("shape", 28)]),
             h("span", { class: "card-name" }, design.name),
-            h("span", { class: "card-text" }, view.language === "de"
-              ? t(`library.${design.name}`, {}) === `library.${design.name}` ? design.description
-                : t(`library.${design.name}`) : design.description),
+            h("span", { class: "card-text" }, words(design)),
           ]),
         ]))),
       ],

@@ -1,17 +1,39 @@
 // Every joint and beam in a list: what the plan shows, for keyboards and screen readers.
 
-import { computed, h, nextTick, ref, watch } from "/libraries/vue.js";
+import { computed, h, nextTick, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
 import { removeParts, stepActuators } from "../document/edit.js";
 import { edit, select, state } from "../store.js";
 import { t } from "../text/text.js";
 import { icon } from "./icons.js";
 import { beamWords, isSelected, jointWords, messagesOfParts, toggle } from "./parts.js";
 
+const LATER = 100; // ms; numbers in the list follow a drag ten times a second
+
+/** Return a ref of the grid that lags behind while only places and ratios change. */
+function useCalmGrid() {
+  const shown = shallowRef(state.document.grid);
+  let timer = 0;
+  const update = () => {
+    clearTimeout(timer);
+    timer = 0;
+    shown.value = state.document.grid;
+  };
+  watch(() => state.document.grid, ({ joints, beams }) => {
+    if (joints.length !== shown.value.joints.length || beams.length !== shown.value.beams.length) update();
+    else if (timer === 0) timer = setTimeout(update, LATER);
+  });
+  onBeforeUnmount(() => clearTimeout(timer));
+  return shown;
+}
+
 const keyOf = (kind, number) => `${kind} ${number}`;
 
 /** One part; renders again only where something of it changes. */
 const Row = {
-  props: { id: String, name: String, detail: String, level: String, message: String, selected: Boolean, focusable: Boolean },
+  props: {
+    id: String, name: String, detail: String, level: String, message: String,
+    selected: Boolean, focusable: Boolean,
+  },
   setup: (props) => () => h("div", {
     class: "part", role: "option", "data-part": props.id, "aria-selected": String(props.selected),
     "aria-label": [props.name, props.detail, props.message].filter(Boolean).join(", "),
@@ -24,15 +46,18 @@ const Row = {
   ]),
 };
 
+const group = (name, rows) => h("div", { role: "group", "aria-label": name }, rows);
+
 export const Outline = {
   setup() {
     const root = ref(null);
     const focused = ref(null); // key of the row that Tab reaches
     let anchor = null; // key at which a range begins
-    const marks = computed(() => messagesOfParts(state.check, state.document.grid));
+    const grid = useCalmGrid();
+    const marks = computed(() => messagesOfParts(state.check, grid.value));
     const keys = computed(() => [
-      ...state.document.grid.joints.map((_, k) => keyOf("joints", k)),
-      ...state.document.grid.beams.map((_, b) => keyOf("beams", b)),
+      ...grid.value.joints.map((_, k) => keyOf("joints", k)),
+      ...grid.value.beams.map((_, b) => keyOf("beams", b)),
     ]);
     const element = (key) => root.value?.querySelector(`[data-part="${key}"]`);
     const partOf = (key) => {
@@ -70,7 +95,8 @@ export const Outline = {
       if (!key) return;
       const at = keys.value.indexOf(key);
       const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: keys.value.length - 1 }[event.key];
-      const beams = key.startsWith("beams") && !isSelected(...partOf(key)) ? [partOf(key)[1]] : state.selection.beams;
+      const [kind, number] = partOf(key);
+      const parts = isSelected(kind, number) ? state.selection : { joints: [], beams: [], [kind]: [number] };
       const direction = { "+": 1, "-": -1 }[event.key];
       if (to !== undefined) {
         const next = keys.value[Math.min(keys.value.length - 1, Math.max(0, to))];
@@ -79,14 +105,13 @@ export const Outline = {
       } else if (event.key === " " || event.key === "Enter") {
         choose(key, event);
       } else if (event.key === "a" && (event.ctrlKey || event.metaKey)) {
-        const { grid } = state.document;
-        select({ joints: grid.joints.map((_, k) => k), beams: grid.beams.map((_, b) => b) });
-      } else if (direction && beams.length) {
-        edit((document) => stepActuators(document, beams, direction), { label: t("common.didRatios", { n: beams.length }) });
+        const { joints, beams } = state.document.grid;
+        select({ joints: joints.map((_, k) => k), beams: beams.map((_, b) => b) });
+      } else if (direction) {
+        const label = t("common.didRatios", { n: parts.beams.length });
+        edit((document) => stepActuators(document, parts.beams, direction), { label });
       } else if (event.key === "Delete" || event.key === "Backspace") {
-        const [kind, number] = partOf(key);
-        const parts = isSelected(kind, number) ? state.selection : { [kind]: [number] };
-        edit((document) => removeParts(document, parts), { label: t("common.didDelete", { count: "" }) });
+        edit((document) => removeParts(document, parts), { label: t("common.didDelete") });
         select({});
         nextTick(() => move(keys.value[Math.min(at, keys.value.length - 1)] ?? null));
       } else {
@@ -108,30 +133,31 @@ export const Outline = {
     });
     // What is selected elsewhere comes into view here.
     watch(() => state.selection, ({ joints, beams }) => {
-      const key = joints.length ? keyOf("joints", joints.at(-1)) : beams.length ? keyOf("beams", beams.at(-1)) : null;
-      if (!key || root.value?.contains(globalThis.document.activeElement)) return;
+      const key = keyOf(...(joints.length ? ["joints", joints.at(-1)] : ["beams", beams.at(-1)]));
+      if (!keys.value.includes(key) || root.value?.contains(globalThis.document.activeElement)) return;
       focused.value = key;
-      nextTick(() => reveal(root.value, element(key)));
+      nextTick(() => reveal(root.value?.parentElement, element(key)));
     }, { immediate: true });
 
     const row = (kind, words) => (_, number) => {
       const messages = marks.value[kind].get(number) ?? [];
       const key = keyOf(kind, number);
-      const { name, detail } = words(state.document.grid, number);
+      const { name, detail } = words(grid.value, number);
       return h(Row, {
         key, id: key, name, detail,
-        level: messages.length ? (messages.some((one) => one.kind === "error") ? "error" : "warning") : undefined,
+        level: messages.some((one) => one.kind === "error") ? "error" : messages[0]?.kind,
         message: messages.map(({ message }) => message).join("; ") || undefined,
         selected: isSelected(kind, number),
         focusable: key === (keys.value.includes(focused.value) ? focused.value : keys.value[0]),
       });
     };
     return () => {
-      const { joints, beams } = state.document.grid;
+      const { joints, beams } = grid.value;
       return h("section", { class: "outline", "aria-label": t("common.parts") }, [
         h("h2", t("common.parts")),
         h("div", {
-          class: "parts", ref: root, role: "listbox", "aria-multiselectable": "true", "aria-label": t("common.parts"),
+          class: "parts", ref: root,
+          role: "listbox", "aria-multiselectable": "true", "aria-label": t("common.parts"),
           onClick: (event) => rowAt(event) && choose(rowAt(event), event),
           onKeydown,
           onFocusin: (event) => { state.hover = rowAt(event) ? hoverOf(rowAt(event)) : null; },
@@ -139,8 +165,8 @@ export const Outline = {
           onPointerover: (event) => { state.hover = rowAt(event) ? hoverOf(rowAt(event)) : null; },
           onPointerleave: () => { state.hover = null; },
         }, [
-          h("div", { role: "group", "aria-label": t("common.joints") }, joints.map(row("joints", jointWords))),
-          h("div", { role: "group", "aria-label": t("common.beams") }, beams.map(row("beams", beamWords))),
+          group(t("common.joints"), joints.map(row("joints", jointWords))),
+          group(t("common.beams"), beams.map(row("beams", beamWords))),
         ]),
       ]);
     };

@@ -1,6 +1,7 @@
 // Joints and beams in words, and which of them a message is about.
 
 import { beamLength } from "../document/measure.js";
+import { partsIn } from "../plan/messages.js";
 import { select, state, view } from "../store.js";
 import { formatNumber } from "../text/numbers.js";
 import { t } from "../text/text.js";
@@ -10,9 +11,8 @@ const BOTH = new Set(["overlap", "joints-coincide"]); // codes of messages whose
 /** Return the parts that a message is about: { joints, beams }. */
 export function partsOf({ code, where = "", message = "" }, grid) {
   const found = { joints: [], beams: [] };
-  for (const [, kind, digits] of (BOTH.has(code) ? message : where).matchAll(/\b(joint|beam) (\d+)/g)) {
-    const [numbers, all] = kind === "joint" ? [found.joints, grid.joints] : [found.beams, grid.beams];
-    const number = Number(digits);
+  for (const [part, number] of partsIn(BOTH.has(code) ? message : where)) {
+    const [numbers, all] = part === "joint" ? [found.joints, grid.joints] : [found.beams, grid.beams];
     if (number < all.length && !numbers.includes(number)) numbers.push(number);
   }
   return found;

@@ -10,7 +10,7 @@ import { partsOf } from "./parts.js";
 
 const FEW = 4; // messages that are shown before "show all"
 
-function entry(kind, message, i) {
+function entry(kind, message, i, offered) {
   const { grid } = state.document;
   const fresh = state.check.document.grid === grid; // numbers in messages are those of the checked grid
   const parts = partsOf(message, grid);
@@ -21,16 +21,19 @@ function entry(kind, message, i) {
   const limits = { ...state.material?.limits, ...state.material?.section };
   const mend = fresh && repair(message, state.document, state.check.netLengths, limits);
   const label = mend && t(mend.label, mend.values);
+  const first = label && !offered.has(label); // several messages may have one cause
+  offered.add(label);
   return h("li", { key: `${message.code} ${message.where} ${i}`, class: ["message", kind] }, [
     icon(kind, 18),
     h("div", { class: "message-body" }, [
       somewhere
         ? h("button", {
           type: "button", class: "message-text", title: t("common.showPlace"),
-          onClick: () => select(parts), onFocus: show, onBlur: hide, onPointerenter: show, onPointerleave: hide,
+          onClick: () => select(parts),
+          onFocus: show, onBlur: hide, onPointerenter: show, onPointerleave: hide,
         }, message.message)
         : h("p", { class: "message-text" }, message.message),
-      mend && button(label, () => edit(mend.apply, { label }), { kind: "small" }),
+      first && button(label, () => edit(mend.apply, { label }), { kind: "small" }),
     ]),
   ]);
 }
@@ -40,15 +43,17 @@ function messageList(kind) {
   return {
     setup() {
       const all = ref(false);
+      const showAll = () => { all.value = true; };
       return () => {
         const messages = state.check?.[`${kind}s`] ?? [];
         if (messages.length === 0) return null;
         const shown = all.value ? messages : messages.slice(0, FEW);
         const n = messages.length;
+        const offered = new Set();
         return h("section", { class: ["problems", kind], "aria-label": t(`common.${kind}s`) }, [
           h("h2", t(n === 1 ? `common.${kind}Count` : `common.${kind}sCount`, { n })),
-          h("ul", { class: "messages" }, shown.map((message, i) => entry(kind, message, i))),
-          shown.length < n && button(t("common.showAll", { n }), () => { all.value = true; }, { kind: "quiet small" }),
+          h("ul", { class: "messages" }, shown.map((message, i) => entry(kind, message, i, offered))),
+          shown.length < n && button(t("common.showAll", { n }), showAll, { kind: "quiet small" }),
         ]);
       };
     },

@@ -6,7 +6,7 @@ import { Shape } from "../shape/shape.js";
 import { state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { Segmented, iconButton } from "./controls.js";
-import { useMedia } from "./media.js";
+import { NARROW, PHONE, useMedia } from "./media.js";
 
 const LEAST = 0.2; // part of the width that each view keeps
 const GONE = 0.1; // drawn below this part, a view is closed
@@ -18,7 +18,7 @@ const clamp = (share) => Math.min(1 - LEAST, Math.max(LEAST, share));
 export const PaneSwitch = {
   props: { compact: Boolean },
   setup(props) {
-    const phone = useMedia("(max-width: 599px)");
+    const phone = useMedia(PHONE);
     return () => {
       const options = [
         { value: "plan", text: t("common.plan"), glyph: "plan" },
@@ -38,12 +38,12 @@ export const PaneSwitch = {
 export const Views = {
   setup() {
     const root = ref(null);
-    const phone = useMedia("(max-width: 599px)");
-    const stacked = useMedia("(max-width: 899px)");
+    const phone = useMedia(PHONE);
+    const narrow = useMedia(NARROW);
     const pane = computed(() => (phone.value && view.pane === "both" ? "plan" : view.pane));
     const shareAt = (event) => {
       const box = root.value.getBoundingClientRect();
-      return stacked.value ? (event.clientY - box.top) / box.height : (event.clientX - box.left) / box.width;
+      return (event.clientX - box.left) / box.width;
     };
     const drag = (event) => {
       if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
@@ -66,7 +66,7 @@ export const Views = {
     };
     const divider = () => h("div", {
       class: "divider", role: "separator", tabindex: 0,
-      "aria-orientation": stacked.value ? "horizontal" : "vertical",
+      "aria-orientation": "vertical",
       "aria-label": t("common.divider"), title: t("common.dividerHint"),
       "aria-valuemin": LEAST * 100, "aria-valuemax": (1 - LEAST) * 100,
       "aria-valuenow": Math.round(view.share * 100),
@@ -76,12 +76,14 @@ export const Views = {
       },
       onPointermove: drag, onPointerup: drop, onDblclick: () => { view.share = 0.5; }, onKeydown: key,
     });
+    const closeTip = () => { view.tip = false; };
     return () => h("main", { class: "main" }, [
       h("h1", { class: "hidden" }, t("common.studio")),
       state.server && !state.server.ready && h("p", { class: "tip", role: "status" }, t("common.preparing")),
+      narrow.value && h(PaneSwitch),
       view.tip && h("div", { class: "tip" }, [
         h("p", t("common.tip")),
-        iconButton("close", t("common.tipClose"), () => { view.tip = false; }, { class: "icon-button small" }),
+        iconButton("close", t("common.tipClose"), closeTip, { class: "icon-button small" }),
       ]),
       h("div", {
         class: ["views", pane.value], ref: root,

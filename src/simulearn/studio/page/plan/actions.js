@@ -2,7 +2,8 @@
 
 import { splitBeam } from "../document/drawing.js";
 import {
-  copyParts, flipActuators, jointsOf, mirror, moveJoints, pasteParts, removeParts, rotate, setActuators, stepActuators,
+  copyParts, flipActuators, jointsOf, mirror, moveJoints, pasteParts, removeParts, rotate, setActuators,
+  stepActuators,
 } from "../document/edit.js";
 import { bounds } from "../document/measure.js";
 import { edit, endMerge, redo, select, state, undo } from "../store.js";
@@ -21,10 +22,8 @@ const ZOOM = 1.4; // of one press on + or - of the zoom
 let clip = null; // what was copied
 let pause = 0;
 
-/** Change to a tool; what the one before has begun is ended. */
+/** Change to a tool; a line that is being drawn ends. */
 export function useTool(name) {
-  if (state.tool === "draw" && name !== "draw") currentTool().finish();
-  else currentTool().cancel();
   state.tool = name;
   editor.popover = null;
 }
@@ -147,7 +146,8 @@ export function ratioText(ratio) {
 export function nudge(by) {
   if (!hasSelection()) return;
   const numbers = jointsOf(state.document.grid, state.selection);
-  edit((document) => moveJoints(document, numbers, by), { label: t("plan.editMoveJoints"), merge: `plan-nudge-${numbers}` });
+  const merge = `plan-nudge-${numbers}`;
+  edit((document) => moveJoints(document, numbers, by), { label: t("plan.editMoveJoints"), merge });
   endAfterPause();
   const [x, y] = state.document.grid.joints[numbers[0]];
   announce(t("plan.saidNudged", { joint: numbers[0], x: shown(x), y: shown(y) }));

@@ -10,6 +10,14 @@ export function firstCamera({ width, height }) {
   return { x: width / 2, y: height / 2, scale: 3 };
 }
 
+/** Return the scale by which handles and text are sized: it changes in steps of 5 %, which nobody sees.
+ *
+ * Each change of it makes the browser compute the style of every part anew.
+ */
+export function sizeScale(scale) {
+  return Number((1.05 ** Math.round(Math.log(scale) / Math.log(1.05))).toPrecision(4));
+}
+
 /** Return the pixel of a point in mm. */
 export function toScreen({ x, y, scale }, [px, py]) {
   return [x + scale * px, y - scale * py];

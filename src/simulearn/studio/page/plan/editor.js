@@ -4,11 +4,14 @@
 import { nextTick, shallowReactive } from "/libraries/vue.js";
 import { firstCamera, fit, toPlan } from "./camera.js";
 import { bounds } from "../document/measure.js";
-import { state, view } from "../store.js";
+import { state } from "../store.js";
 
 const WIDTH = 7.2; // mm, of a beam until the material is known
 const REACH = { mouse: 8, touch: 20 }; // px around a joint that still hit it
-const MARGIN = { left: 84, right: 48, top: 48, bottom: 60 }; // px around what is fitted; tools are left
+// px around what is fitted; the tools lie on the left, in a low view (as in the style sheet) on top
+const MARGIN = { left: 84, right: 48, top: 56, bottom: 60 };
+const LOW_MARGIN = { left: 32, right: 32, top: 72, bottom: 28 };
+const LOW = 420; // px
 
 export const editor = shallowReactive({
   camera: firstCamera({ width: 600, height: 600 }),
@@ -16,6 +19,9 @@ export const editor = shallowReactive({
   size: { width: 600, height: 600 },
   pointer: null, // { screen, point, touch } while the pointer is over the plan
   dragging: false, // whether parts are being moved
+  pressed: false, // whether a button or finger is down
+  keys: false, // whether the last input was a key: then the focus is shown
+  grab: false, // whether the space bar is down, to move the plan
   panning: false, // whether the plan is being moved
   focus: null, // { joint } or { beam }: what keys reach by Tab
   snapped: null, // what `snap` found: { point, kind, guides, text }
@@ -33,6 +39,17 @@ let element = null; // the <svg>
 /** Remember the plan's <svg> element. */
 export function setElement(svg) {
   element = svg;
+}
+
+/** Return where a pixel of the view lies on the page. */
+export function onPage([x, y]) {
+  const { left, top } = element.getBoundingClientRect();
+  return [left + x, top + y];
+}
+
+/** Return whether the view is so low that the tools lie in a row. */
+export function isLow() {
+  return editor.size.height <= LOW;
 }
 
 /** Return the width of beams in mm. */
@@ -63,7 +80,7 @@ export function fitAll() {
   editor.camera = box
     ? fit(
       { x: [box.min[0] - half, box.max[0] + half], y: [box.min[1] - half, box.max[1] + half] },
-      editor.size, MARGIN,
+      editor.size, isLow() ? LOW_MARGIN : MARGIN,
     )
     : firstCamera(editor.size);
   editor.fitted = true;
@@ -89,12 +106,7 @@ export function clearMarks() {
 export async function focusPart(part) {
   editor.focus = part;
   await nextTick();
-  const selector = part && (part.joint !== undefined ? `[data-joint="${part.joint}"]` : `[data-beam="${part.beam}"]`);
-  const target = (part && element?.querySelector(`[role=option]${selector}`)) || element;
+  const selector = part?.joint !== undefined ? `[data-joint="${part.joint}"]` : `[data-beam="${part?.beam}"]`;
+  const target = element?.querySelector(`[role=option]${selector}`) ?? element;
   target?.focus({ preventScroll: true });
-}
-
-/** Return whether the plan is shown beside the shape or alone. */
-export function isShown() {
-  return view.pane !== "shape";
 }

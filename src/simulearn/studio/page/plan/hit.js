@@ -33,7 +33,8 @@ export function samePart(a, b) {
 /** Return whether a part is in a selection. */
 export function isSelected(selection, part) {
   if (!part) return false;
-  return part.joint !== undefined ? selection.joints.includes(part.joint) : selection.beams.includes(part.beam);
+  const { joints, beams } = selection;
+  return part.joint !== undefined ? joints.includes(part.joint) : beams.includes(part.beam);
 }
 
 /** Return the selection with a part added, or without it where it was in. */

@@ -2,13 +2,19 @@
 // key is meant for the plan and not for a field, a menu or another part of the page.
 
 const PLAIN = {
-  v: "select", d: "draw", s: "split", x: "fix", f: "fit", "+": "longer", "=": "longer", "-": "shorter", "0": "quarters 0",
-  1: "quarters 1", 2: "quarters 2", 3: "quarters 3", 4: "quarters 4", b: "flip", m: "mirror x", r: "rotate 90",
+  v: "select", d: "draw", s: "split", x: "fix", f: "fit", "+": "longer", "=": "longer", "-": "shorter",
+  0: "quarters 0", 1: "quarters 1", 2: "quarters 2", 3: "quarters 3", 4: "quarters 4", b: "flip",
+  m: "mirror x", r: "rotate 90",
   delete: "delete", backspace: "delete",
 };
 const SHIFTED = { m: "mirror y", r: "rotate -90", "+": "longer", "*": "longer", f10: "menu" };
 const CONTROL = { z: "undo", y: "redo", a: "all", c: "copy", v: "paste", d: "duplicate" };
-const FIELDS = "input, textarea, select, [contenteditable=''], [contenteditable=true], dialog, [role=dialog], [role=menu]";
+const FIELDS = [
+  "input", "textarea", "select", "[contenteditable='']", "[contenteditable=true]", "dialog", "[role=dialog]",
+  "[role=menu]",
+].join();
+// Buttons outside the plan that have keys of their own.
+const GROUPS = ["[role=tablist]", "[role=radiogroup]", "[role=listbox]", ".shape"].join();
 
 /** Return the command of a key event, or null. */
 export function command({ key, ctrlKey, metaKey, shiftKey, altKey }) {
@@ -31,10 +37,14 @@ export function nudgeStep({ shiftKey, altKey }) {
   return shiftKey ? 10 : 1;
 }
 
-/** Return whether a key pressed at an element is meant for something else than the plan. */
+/** Return whether a key pressed at an element is meant for something else than the plan.
+ *
+ * A button that was clicked keeps the focus; keys that it has no use for go to the plan.
+ */
 export function isElsewhere(target, plan) {
   if (target.closest?.(FIELDS)) return true;
-  return target !== document.body && target !== document.documentElement && !plan.contains(target);
+  if (target === document.body || target === document.documentElement || plan.contains(target)) return false;
+  return !target.closest?.("button") || target.closest(GROUPS) !== null;
 }
 
 /** Listen to keys that are meant for `plan`; returns a function that ends this.

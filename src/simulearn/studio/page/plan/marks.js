@@ -27,7 +27,8 @@ function dimension(grid, b) {
   const [x, y] = placeOf(grid, { beam: b });
   let turn = (Math.atan2(q[1] - p[1], q[0] - p[0]) * 180) / Math.PI;
   if (turn > 90.01 || turn <= -89.99) turn += 180;
-  return h("g", { key: b, transform: `translate(${x} ${y}) rotate(${turn}) translate(0 ${beamWidth() / 2}) scale(1 -1)` },
+  const transform = `translate(${x} ${y}) rotate(${turn}) translate(0 ${beamWidth() / 2}) scale(1 -1)`;
+  return h("g", { key: b, transform },
     h("text", { class: "sized", y: -5 }, shown(beamLength(grid, b))));
 }
 
@@ -42,7 +43,8 @@ function height(grid, k) {
   });
   const side = steep ? -1 : 1;
   return h("g", { key: k, transform: `translate(${x} ${y})` },
-    h("g", { class: "upright" }, h("text", { class: side < 0 ? "left" : "right", x: 11 * side, y: -10 }, `↑ ${shown(z)}`)));
+    h("g", { class: "upright" },
+      h("text", { class: side < 0 ? "left" : "right", x: 11 * side, y: -10 }, `z ${shown(z)}`)));
 }
 
 function badge(grid, part, { kind }) {

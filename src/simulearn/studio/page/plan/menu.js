@@ -1,13 +1,13 @@
 // The context menu of a part, or of an empty place.
 
-import { h, nextTick, watch } from "/libraries/vue.js";
+import { Teleport, h, nextTick, onBeforeUnmount, onMounted, watch } from "/libraries/vue.js";
 import { select, state } from "../store.js";
 import { t } from "../text/text.js";
 import {
   canPaste, copySelection, duplicateSelection, fitAll, fixJoint, flipBeams, mirrorSelection, paste,
   removeSelection, rotateSelection, selectAll, setBeams, splitMiddle, stepBeams,
 } from "./actions.js";
-import { editor, focusPart } from "./editor.js";
+import { editor, focusPart, onPage } from "./editor.js";
 import { isSelected, only } from "./hit.js";
 import { clamped } from "./placement.js";
 
@@ -39,12 +39,14 @@ function groups(part) {
   return [
     own,
     [
-      ...(part ? [entry("copy", "Ctrl C", copySelection), entry("duplicate", "Ctrl D", duplicateSelection)] : []),
+      ...(part ? [entry("copy", "Ctrl C", copySelection)] : []),
+      ...(part ? [entry("duplicate", "Ctrl D", duplicateSelection)] : []),
       entry("paste", "Ctrl V", paste, !canPaste()),
       ...(part ? [] : [entry("all", "Ctrl A", selectAll), entry("fit", "F", fitAll)]),
     ],
     [
-      entry("mirrorX", "M", () => mirrorSelection("x")), entry("mirrorY", "Shift M", () => mirrorSelection("y")),
+      entry("mirrorX", "M", () => mirrorSelection("x")),
+      entry("mirrorY", "Shift M", () => mirrorSelection("y")),
       entry("rotate", "R", () => rotateSelection(90)),
     ],
     part && some ? [entry("delete", "Del", removeSelection)] : [],
@@ -67,13 +69,19 @@ export const Menu = {
     const onKeydown = (event) => {
       const all = entries(element);
       const at = all.indexOf(document.activeElement);
-      const step = { ArrowDown: at + 1, ArrowUp: at - 1 + all.length, Home: 0, End: all.length - 1 }[event.key];
+      const last = all.length - 1;
+      const step = { ArrowDown: at + 1, ArrowUp: at + last, Home: 0, End: last }[event.key];
       if (step !== undefined) all[step % all.length].focus();
       else if (event.key === "Escape" || event.key === "Tab") close();
       else return;
       event.preventDefault();
       event.stopPropagation();
     };
+    const onPointerdown = ({ target }) => {
+      if (editor.menu && !element?.contains(target)) editor.menu = null;
+    };
+    onMounted(() => document.addEventListener("pointerdown", onPointerdown, true));
+    onBeforeUnmount(() => document.removeEventListener("pointerdown", onPointerdown, true));
     const onFocusout = ({ relatedTarget }) => {
       if (relatedTarget && !element?.contains(relatedTarget)) editor.menu = null;
     };
@@ -82,22 +90,26 @@ export const Menu = {
       if (!menu) return null;
       const list = groups(menu.part);
       const height = list.reduce((sum, group) => sum + group.length * ROW + RULE, 0);
-      const [x, y] = clamped(menu.screen, { width: WIDTH, height }, editor.size);
-      return h("div", {
+      const window = { width: innerWidth, height: innerHeight };
+      const [x, y] = clamped(onPage(menu.screen), { width: WIDTH, height }, window);
+      // On the page itself, since a low plan would cut it off.
+      return h(Teleport, { to: "body" }, h("div", {
         class: "plan-menu", role: "menu", "aria-label": t("plan.menu"), onKeydown, onFocusout,
         ref: (el) => {
           element = el;
         },
         onContextmenu: (event) => event.preventDefault(),
         style: { transform: `translate(${x}px, ${y}px)`, width: `${WIDTH}px` },
-      }, list.map((group, k) => h("div", { role: "group", key: k }, group.map(({ label, key, run, disabled }) =>
-        h("button", {
+      }, list.map((group, k) => h("div", { role: "group", key: k }, group.map((one) => {
+        const { label, key, run, disabled } = one;
+        return h("button", {
           type: "button", role: "menuitem", key: label, disabled, tabindex: -1,
           onClick: () => {
             close();
             run();
           },
-        }, [h("span", label), h("kbd", { "aria-hidden": "true" }, key)])))));
+        }, [h("span", label), h("kbd", { "aria-hidden": "true" }, key)]);
+      })))));
     };
   },
 };

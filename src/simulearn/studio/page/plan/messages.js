@@ -25,5 +25,6 @@ export function marksOf(check, grid) {
 
 /** Return the parts that a text names, as [["joint", 3], ["beam", 7]]. */
 export function partsIn(text) {
-  return [...String(text).matchAll(/\b(joint|beam) (\d+)/g)].map(([, part, number]) => [part, Number(number)]);
+  const found = [...String(text).matchAll(/\b(joint|beam) (\d+)/g)];
+  return found.map(([, part, number]) => [part, Number(number)]);
 }

@@ -13,15 +13,17 @@ export const Under = {
     const width = beamWidth();
     if (part?.beam !== undefined && grid.beams[part.beam]) {
       const [p, q] = grid.beams[part.beam].map((k) => grid.joints[k]);
-      return h("g", { class: "plan-hover", style: { "--wide": width } }, h("path", { class: "beam", d: `M${p}L${q}` }));
+      return halo(h("path", { d: `M${p}L${q}`, style: { "--wide": width } }));
     }
     if (part?.joint !== undefined && grid.joints[part.joint]) {
       const [x, y] = grid.joints[part.joint];
-      return h("g", { class: "plan-hover" }, h("circle", { cx: x, cy: y }));
+      return halo(h("circle", { cx: x, cy: y }));
     }
     return h("g");
   },
 };
+
+const halo = (mark) => h("g", { class: "plan-hover", "aria-hidden": "true" }, mark);
 
 /** What lies above the parts. */
 export const Over = {
@@ -32,7 +34,7 @@ export const Over = {
       active ? guides(snapped) : null,
       line ? drawn(line) : null,
       active && snapped ? snapMark(snapped) : null,
-      cut ? h("g", { class: "cut", transform: `translate(${cut.point})` }, h("circle", { class: "handle" })) : null,
+      cut ? h("circle", { class: "handle cut", cx: cut.point[0], cy: cut.point[1] }) : null,
       box ? selectionBox(box) : null,
     ]);
   },
@@ -49,13 +51,14 @@ function drawn({ points, fixed, joints }) {
     h("path", { class: "body", d: d(points), "stroke-width": beamWidth() }),
     h("path", { class: "axis", d: d(points) }),
     ...joints.map(([x, y], k) => h("circle", { key: k, class: "handle", cx: x, cy: y })),
-    ...points.slice(0, fixed).map(([x, y], k) => h("circle", { key: `p${k}`, class: "handle placed", cx: x, cy: y })),
+    ...points.slice(0, fixed).map(([x, y], k) =>
+      h("circle", { key: `p${k}`, class: "handle placed", cx: x, cy: y })),
   ]);
 }
 
 function snapMark({ point, kind }) {
-  if (kind === "grid" || kind === "none") return h("circle", { class: "snap free", cx: point[0], cy: point[1] });
-  return h("circle", { class: "snap", cx: point[0], cy: point[1] });
+  const free = kind === "grid" || kind === "none";
+  return h("circle", { class: ["snap", { free }], cx: point[0], cy: point[1] });
 }
 
 function selectionBox([p, q]) {

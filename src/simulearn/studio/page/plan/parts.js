@@ -43,7 +43,9 @@ export const Parts = {
 };
 
 const Beam = {
-  props: ["b", "x1", "y1", "x2", "y2", "ratio", "net", "width", "selected", "stop", "mark", "message", "language"],
+  props: [
+    "b", "x1", "y1", "x2", "y2", "ratio", "net", "width", "selected", "stop", "mark", "message", "language",
+  ],
   render() {
     const { b, x1, y1, x2, y2, ratio, net, width, selected, stop, mark } = this;
     const length = Math.hypot(x2 - x1, y2 - y1);
@@ -52,28 +54,45 @@ const Beam = {
     const half = ratio > 0 ? "top" : "bottom";
     const box = (long, high) => ({ x: -long / 2, y: -high / 2, width: long, height: high });
     return h("g", {
-      class: ["beam", mark, { selected }], role: "option", "aria-selected": selected, "aria-label": beamLabel(this),
-      tabindex: stop ? 0 : -1, "data-beam": b,
+      class: ["beam", mark, { selected }], role: "option", "aria-selected": selected,
+      "aria-label": beamLabel(this), tabindex: stop ? 0 : -1, "data-beam": b,
       transform: `translate(${(x1 + x2) / 2} ${(y1 + y2) / 2}) rotate(${turn})`,
     }, [
       h("rect", { class: "body", ...box(length, width) }),
       ratio === 0 ? null : h("rect", { class: ["active", half], ...box(active, width) }),
-      ratio === 0 ? null : h("rect", { class: "pattern", fill: `url(#plan-${half})`, ...box(active, width) }),
+      ratio === 0 ? null : h("path", {
+        class: ["pattern", half], d: pattern(half, active, width),
+        "stroke-width": half === "top" ? width : width / 6.5,
+      }),
       h("rect", { class: "edge", ...box(length, width) }),
       ratio === 0 || Math.min(net, length) < LABEL ? null : ratioMark(ratio, turn),
     ]);
   },
 };
 
+/** What tells top from bottom where colours do not: bars across for top, two rows of dots for bottom.
+ *
+ * Dashed lines (see the style sheet), since filling with an SVG pattern takes twice the time.
+ */
+function pattern(half, active, width) {
+  const [from, to] = [-active / 2 + 1, active / 2 - 1];
+  if (half === "top") return `M${from} 0H${to}`;
+  return `M${from} ${width / 5}H${to}M${from} ${-width / 5}H${to}`;
+}
+
 /** The ratio as a small plate in the middle of a beam, readable from below or from the right. */
 function ratioMark(ratio, turn) {
   const upside = turn > 90.01 || turn <= -89.99;
   const text = `${shown(Math.abs(ratio) * 100, 0)} %`;
   const wide = 18 + text.length * 6.4; // px, with the arrow
-  return h("g", { class: ["ratio", ratio > 0 ? "top" : "bottom"], transform: upside ? "scale(-1 1)" : "scale(1 -1)" }, [
+  const transform = upside ? "scale(-1 1)" : "scale(1 -1)";
+  return h("g", { class: ["ratio", ratio > 0 ? "top" : "bottom"], transform }, [
     h("g", { class: "sized" }, [
       h("rect", { x: -wide / 2, y: -7.5, width: wide, height: 15, rx: 4 }),
-      h("path", { d: ratio > 0 ? "M0 -3.5l3.6 6h-7.2z" : "M0 3.5l3.6 -6h-7.2z", transform: `translate(${9.5 - wide / 2} 0.3)` }),
+      h("path", {
+        d: ratio > 0 ? "M0 -3.5l3.6 6h-7.2z" : "M0 3.5l3.6 -6h-7.2z",
+        transform: `translate(${9.5 - wide / 2} 0.3)`,
+      }),
       h("text", { x: 5.5, y: 3.8 }, text),
     ]),
   ]);
@@ -85,7 +104,8 @@ const Joint = {
     const { k, x, y, width, fixed, selected, stop, mark } = this;
     return h("g", {
       class: ["joint", mark, { selected, fixed }], role: "option", "aria-selected": selected,
-      "aria-label": jointLabel(this), tabindex: stop ? 0 : -1, "data-joint": k, transform: `translate(${x} ${y})`,
+      "aria-label": jointLabel(this), tabindex: stop ? 0 : -1, "data-joint": k,
+      transform: `translate(${x} ${y})`,
     }, [
       h("circle", { class: "body", r: width / 2 }),
       h("circle", { class: "handle" }),
@@ -95,7 +115,8 @@ const Joint = {
 };
 
 // An anchor on 16 by 16 around the origin.
-const PIN = "M0 -2.4V5.6M-2.7 -0.4H2.7M-5 2C-4.7 4.4 -2.8 5.6 0 5.6C2.8 5.6 4.7 4.4 5 2M0 -5.4a1.5 1.5 0 1 0 .01 0z";
+const PIN = "M0 -2.4V5.6M-2.7 -.4H2.7M-5 2C-4.7 4.4 -2.8 5.6 0 5.6C2.8 5.6 4.7 4.4 5 2"
+  + "M0 -5.4a1.5 1.5 0 1 0 .01 0z";
 
 /** Return a beam's name for screen readers: "Beam 7, 65.0 mm, actuator 50 % top". */
 function beamLabel({ b, x1, y1, x2, y2, ratio, selected, mark, message }) {
@@ -130,10 +151,11 @@ export function factsOf(part) {
   }
   const [i, j] = grid.beams[part.beam];
   const heights = [i, j].map((k) => jointHeight(state.answer, grid, k));
+  const known = !heights.includes(null);
   return [
     { name: t("plan.length"), value: `${shown(beamLength(grid, part.beam))} mm` },
     { name: t("plan.net"), value: `${shown(netLengths(grid, state.check, beamWidth())[part.beam])} mm` },
     { name: t("plan.angle"), value: `${shown(((beamAngle(grid, part.beam) % 180) + 180) % 180)}°` },
-    ...(heights.includes(null) ? [] : [{ name: t("plan.height"), value: `${heights.map((z) => shown(z)).join(" / ")} mm` }]),
+    ...(known ? [{ name: t("plan.height"), value: `${heights.map((z) => shown(z)).join(" / ")} mm` }] : []),
   ];
 }

@@ -3,23 +3,31 @@
 const GAP = 20; // px between beam and panel
 const EDGE = 8; // px between panel and the view's border
 
-/** Return the panel's left upper corner [x, y] in pixels: below the beam, else above, else beside.
+/** Return the panel's left upper corner [x, y] in pixels: beside the beam, away from the grid's middle.
  *
- * ends: the beam's ends in pixels. panel, view: {width, height}; the view's left `tools` px are taken.
+ * ends: the beam's ends in pixels. middle: the grid's middle in pixels. panel, view: {width, height};
+ * the view's left `tools` px are taken.
  */
-export function beside(ends, panel, view, tools = 64) {
+export function beside(ends, middle, panel, view, tools = 64) {
   const [xs, ys] = [0, 1].map((axis) => ends.map((end) => end[axis]));
-  const middle = [(xs[0] + xs[1]) / 2, (ys[0] + ys[1]) / 2];
+  const [x, y] = [(xs[0] + xs[1]) / 2, (ys[0] + ys[1]) / 2];
   const steep = Math.abs(ys[0] - ys[1]) > Math.abs(xs[0] - xs[1]);
-  const half = [panel.width / 2, panel.height / 2];
-  const below = [middle[0] - half[0], Math.max(...(steep ? [middle[1]] : ys)) + GAP];
-  const above = [middle[0] - half[0], Math.min(...(steep ? [middle[1]] : ys)) - GAP - panel.height];
-  const right = [Math.max(...(steep ? xs : [middle[0]])) + GAP, middle[1] - half[1]];
-  const left = [Math.min(...(steep ? xs : [middle[0]])) - GAP - panel.width, middle[1] - half[1]];
-  const fits = ([x, y]) =>
-    x >= tools && y >= EDGE && x + panel.width <= view.width - EDGE && y + panel.height <= view.height - EDGE;
-  const found = (steep ? [right, left, below, above] : [below, above, right, left]).find(fits) ?? below;
-  return clamped(found, panel, view, tools);
+  // A panel at the long side of a beam keeps clear of its ends; at the other side only of its middle.
+  const [wide, high] = steep ? [xs, [y]] : [[x], ys];
+  const [left, top] = [x - panel.width / 2, y - panel.height / 2];
+  const places = {
+    below: [left, Math.max(...high) + GAP],
+    above: [left, Math.min(...high) - GAP - panel.height],
+    right: [Math.max(...wide) + GAP, top],
+    left: [Math.min(...wide) - GAP - panel.width, top],
+  };
+  const upright = y < middle[1] ? ["above", "below"] : ["below", "above"];
+  const level = x < middle[0] ? ["left", "right"] : ["right", "left"];
+  const order = steep ? [...level, ...upright] : [...upright, ...level];
+  const [most, deepest] = [view.width - EDGE - panel.width, view.height - EDGE - panel.height];
+  const fits = ([px, py]) => px >= tools && py >= EDGE && px <= most && py <= deepest;
+  const name = order.find((one) => fits(places[one])) ?? order[0];
+  return clamped(places[name], panel, view, tools);
 }
 
 /** Return a panel's corner moved into the view. */

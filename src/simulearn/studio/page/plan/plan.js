@@ -1,17 +1,17 @@
 // The plan: the flat grid seen from above, where it is drawn and changed.
 
 import { h, onBeforeUnmount, onMounted, watch } from "/libraries/vue.js";
-import { state } from "../store.js";
+import { select, state } from "../store.js";
 import { t } from "../text/text.js";
 import {
   copySelection, duplicateSelection, flipBeams, mirrorSelection, moveFocus, nudge, paste, redoLast,
   removeSelection, rotateSelection, selectAll, setBeams, stepBeams, undoLast, useTool, hasSelection,
 } from "./actions.js";
-import { anyVisible, toScreen } from "./camera.js";
-import { clearMarks, editor, fitAll, setElement } from "./editor.js";
+import { anyVisible, pan, sizeScale, toPlan, toScreen } from "./camera.js";
+import { beamWidth, clearMarks, editor, fitAll, reach, setElement } from "./editor.js";
 import { direction, placeOf, tabStop } from "./focus.js";
 import { Grid, ScaleBar } from "./grid.js";
-import { isSelected, only, toggled } from "./hit.js";
+import { isSelected, only, partAt, toggled } from "./hit.js";
 import { command, listenKeys, nudgeStep } from "./keys.js";
 import { Marks } from "./marks.js";
 import { Menu, openMenu } from "./menu.js";
@@ -22,13 +22,12 @@ import { Popover } from "./popover.js";
 import { Readout } from "./readout.js";
 import { Toolbar, Zooms } from "./toolbar.js";
 import { currentTool, TOOLS } from "./tools/tools.js";
-import { select } from "../store.js";
 
 export const Plan = {
   setup() {
     let section = null;
     let svg = null;
-    let space = false; // whether the space bar is down, to move the plan
+    let space = null; // { used } while the space bar is down: whether it moved the plan
     const ends = [];
 
     onMounted(() => {
@@ -37,11 +36,15 @@ export const Plan = {
       sized.observe(svg);
       ends.push(
         () => sized.disconnect(),
-        listen(svg, { openMenu, isSpaceDown: () => space }),
+        listen(svg, { openMenu, isSpaceDown: useSpace }),
         listenKeys(section, react),
       );
-      const released = ({ code }) => {
-        if (code === "Space") setSpace(false);
+      const released = (event) => {
+        if (event.code !== "Space" || !space) return;
+        const { used } = space;
+        space = null;
+        editor.grab = false;
+        if (!used && svg.contains(event.target)) pick(event);
       };
       document.addEventListener("keyup", released);
       ends.push(() => document.removeEventListener("keyup", released));
@@ -52,26 +55,31 @@ export const Plan = {
     });
 
     watch(() => state.tool, (now, before) => {
-      TOOLS[before]?.cancel();
+      if (before === "draw") TOOLS.draw.finish();
+      else TOOLS[before]?.cancel();
       currentTool().enter?.();
       state.hover = null;
     });
     watch(() => state.document, fitNew);
 
-    function setSpace(down) {
-      space = down;
-      svg.classList.toggle("grab", down);
+    /** Return whether the space bar is down; then it does not select when it is released. */
+    function useSpace() {
+      if (space) space.used = true;
+      return space !== null;
     }
 
     /** Run what a key stands for; return whether it was used. */
     function react(event) {
+      editor.keys = true;
       const onPart = svg.contains(event.target) || event.target === document.body;
       if (event.key === " " && onPart) {
-        if (!event.repeat) setSpace(true);
+        space ??= { used: false };
+        editor.grab = true;
         return true;
       }
       const inButton = event.target.closest?.("button");
-      if (!(inButton && (event.key === "Enter" || event.key === "Tab")) && currentTool().key(event)) return true;
+      const pressesButton = inButton && (event.key === "Enter" || event.key === "Tab");
+      if (!pressesButton && currentTool().key(event)) return true;
       if (event.key === "Enter" && svg.contains(event.target)) return pick(event);
       const name = command(event);
       if (!name || (inButton && (name === "arrow" || name === "focus"))) return false;
@@ -95,10 +103,14 @@ export const Plan = {
 
     const onContextmenu = (event) => {
       event.preventDefault();
-      if (event.button !== 2 || event.pointerType === "touch") return; // keys and fingers open it elsewhere
+      // Keys and fingers open the menu elsewhere.
+      if (event.pointerType ? event.pointerType !== "mouse" : event.button !== 2) return;
+      if (state.tool === "draw" && editor.line?.fixed) return currentTool().finish();
       const { left, top } = svg.getBoundingClientRect();
+      const screen = [event.clientX - left, event.clientY - top];
+      const point = toPlan(editor.camera, screen);
       currentTool().cancel();
-      openMenu([event.clientX - left, event.clientY - top], state.hover?.goal === undefined ? state.hover : null);
+      openMenu(screen, partAt(state.document.grid, point, reach(false), beamWidth()));
     };
 
     const onFocusin = ({ target }) => {
@@ -124,23 +136,28 @@ export const Plan = {
     }
 
     return () => h("section", {
-      class: ["plan", `tool-${state.tool}`], "aria-label": t("plan.title"),
+      class: ["plan", `tool-${state.tool}`, { keys: editor.keys }], "aria-label": t("plan.title"),
       ref: (el) => {
         section = el;
       },
     }, [
       h("svg", {
-        class: ["plan-canvas", { panning: editor.panning, dragging: editor.dragging }],
-        role: "listbox", "aria-multiselectable": "true", "aria-label": t("plan.parts"),
-        tabindex: state.document.grid.joints.length ? -1 : 0, onContextmenu, onFocusin,
+        class: ["plan-canvas", { grab: editor.grab, panning: editor.panning, dragging: editor.dragging }],
+        ...list(), "aria-label": t("plan.parts"), onContextmenu, onFocusin,
         ref: (el) => {
           svg = el;
         },
-      }, [h(Patterns), h(Grid), h(World)]),
+      }, [h(Grid), h(World)]),
       h(Empty), h(Toolbar), h(Hint), h(Zooms), h(ScaleBar), h(Readout), h(Popover), h(Menu), h(Message),
     ]);
   },
 };
+
+/** The plan is a list of joints and beams to choose from; without any it is but a place to draw in. */
+function list() {
+  if (state.document.grid.joints.length === 0) return { role: "group", tabindex: 0 };
+  return { role: "listbox", "aria-multiselectable": "true", tabindex: -1 };
+}
 
 const COMMANDS = {
   select: () => useTool("select"),
@@ -168,8 +185,9 @@ function resize(width, height) {
   if (width === 0 || height === 0) return; // hidden
   const { camera, size } = editor;
   editor.size = { width, height };
+  if (editor.pressed) return; // what the hand holds stays under it
   if (editor.fitted) fitAll();
-  else editor.camera = { ...camera, x: camera.x + (width - size.width) / 2, y: camera.y + (height - size.height) / 2 };
+  else editor.camera = pan(camera, [(width - size.width) / 2, (height - size.height) / 2]);
 }
 
 /** Show all of a document that is new, or of which nothing would be seen. */
@@ -191,32 +209,25 @@ const World = {
     return h("g", {
       class: ["plan-world", { far: scale < 1.7 }],
       transform: `matrix(${scale} 0 0 ${-scale} ${x} ${y})`,
-      style: { "--scale": scale },
+      style: { "--scale": sizeScale(scale) },
     }, [h(Under), h(Parts), h(Marks), h(Over)]);
   },
-};
-
-/** Hatching that tells top from bottom where colours do not: lines for top, dots for bottom. */
-const Patterns = {
-  render: () => h("defs", [
-    h("pattern", { id: "plan-top", width: 2.4, height: 2.4, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
-      h("rect", { width: 0.7, height: 2.4 })),
-    h("pattern", { id: "plan-bottom", width: 2.4, height: 2.4, patternUnits: "userSpaceOnUse" },
-      h("circle", { cx: 1.2, cy: 1.2, r: 0.48 })),
-  ]),
 };
 
 const Empty = {
   render() {
     if (state.document.grid.joints.length || editor.line?.fixed) return null;
-    return h("div", { class: "plan-empty" }, [h("strong", t("plan.emptyTitle")), h("span", t("plan.emptyHint"))]);
+    return h("div", { class: "plan-empty" }, [
+      h("strong", t("plan.emptyTitle")), h("span", t("plan.emptyHint")),
+    ]);
   },
 };
 
 /** What the tool in use expects; while a line is drawn also a button that ends it, for fingers. */
 const Hint = {
   render() {
-    const name = state.tool === "draw" && !editor.line?.fixed ? "DrawStart" : state.tool[0].toUpperCase() + state.tool.slice(1);
+    const { tool } = state;
+    const name = tool === "draw" && !editor.line?.fixed ? "DrawStart" : tool[0].toUpperCase() + tool.slice(1);
     if (state.tool === "select" && state.selection.beams.length === 0) return null;
     return h("div", { class: "plan-hint" }, [
       h("span", t(`plan.hint${name}`)),

@@ -17,7 +17,7 @@ const LONG = 550; // ms that a finger rests to open the menu
 export function listen(svg, { openMenu, isSpaceDown }) {
   const fingers = new Map(); // pointerId -> screen place, of touches
   const wheel = new Wheel();
-  let press = null; // { id, button, screen, moved, pans }
+  let press = null; // { id, screen, last, moved, far, pans, empty } while a button or finger is down
   let waiting = null; // the last move not yet read
   let pinching = null; // places of two fingers when last read
   let frame = 0;
@@ -63,7 +63,10 @@ export function listen(svg, { openMenu, isSpaceDown }) {
       return;
     }
     if (event) moved(event);
-    else if (editor.pointer && turned.use) point({ ...editor.pointer, point: toPlan(editor.camera, editor.pointer.screen) });
+    else if (editor.pointer && turned.use) {
+      const { screen } = editor.pointer;
+      point({ ...editor.pointer, point: toPlan(editor.camera, screen) });
+    }
   }
 
   function moved(event) {
@@ -75,8 +78,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
     }
     if (event.pointerId !== press.id) return;
     const [dx, dy] = [pointer.screen[0] - press.last[0], pointer.screen[1] - press.last[1]];
-    const far = Math.hypot(pointer.screen[0] - press.screen[0], pointer.screen[1] - press.screen[1]);
-    if (!press.moved && far < (pointer.touch ? TOUCH_CLICK : CLICK)) return;
+    if (!press.moved && farFrom(press.screen, pointer.screen) < (pointer.touch ? TOUCH_CLICK : CLICK)) return;
     press.moved = true;
     clearTimeout(long);
     press.last = pointer.screen;
@@ -85,7 +87,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   }
 
   function down(event) {
-    editor.menu = null;
+    Object.assign(editor, { menu: null, keys: false, pressed: true });
     const pointer = read(event);
     point(pointer);
     if (pointer.touch) {
@@ -106,28 +108,38 @@ export function listen(svg, { openMenu, isSpaceDown }) {
     // A finger on an empty place moves the plan, but for Draw; a long press opens the menu.
     const empty = pointer.touch && !part && state.tool !== "draw";
     const pans = event.button === 1 || isSpaceDown() || empty;
-    press = { id: event.pointerId, screen: pointer.screen, last: pointer.screen, moved: false, pans, empty };
+    const { screen } = pointer;
+    press = { id: event.pointerId, screen, last: screen, moved: false, far: false, pans, empty };
     editor.panning = pans && !empty;
-    if (pans) event.preventDefault();
-    else currentTool().press(pointer);
-    if (document.activeElement !== svg && !svg.contains(document.activeElement)) svg.focus({ preventScroll: true });
-    if (pointer.touch && state.tool === "select")
-      long = setTimeout(() => {
-        currentTool().cancel();
-        press = null;
-        openMenu(pointer.screen, part);
-      }, LONG);
+    // Also without the mouse events that browsers make of touches, which would take the focus.
+    if (pans || pointer.touch) event.preventDefault();
+    if (!pans) currentTool().press(pointer);
+    if (!svg.contains(document.activeElement)) svg.focus({ preventScroll: true });
+    const held = press;
+    if (pointer.touch && state.tool === "select") long = setTimeout(() => rested(held, part), LONG);
+  }
+
+  /** Open the menu where a finger has rested; moves that a slow page has yet to see come first. */
+  function rested(held, part) {
+    requestAnimationFrame(() => requestAnimationFrame(() => {
+      if (press !== held || held.far) return;
+      currentTool().cancel();
+      press = null;
+      openMenu(held.screen, part);
+    }));
   }
 
   function move(event) {
     if (event.pointerType === "touch" && fingers.has(event.pointerId))
       fingers.set(event.pointerId, screenOf(event));
+    if (press?.id === event.pointerId) press.far ||= farFrom(press.screen, screenOf(event)) >= TOUCH_CLICK;
     waiting = event;
     plan();
   }
 
   function up(event) {
     clearTimeout(long);
+    editor.pressed = false;
     const two = pinching !== null;
     fingers.delete(event.pointerId);
     if (fingers.size < 2) pinching = null;
@@ -151,6 +163,7 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   }
 
   function cancelled(event) {
+    editor.pressed = false;
     clearTimeout(long);
     fingers.delete(event.pointerId);
     pinching = null;
@@ -189,7 +202,8 @@ export function listen(svg, { openMenu, isSpaceDown }) {
   }
 
   const events = {
-    pointerdown: down, pointermove: move, pointerup: up, pointercancel: cancelled, pointerleave: leave, wheel: turn,
+    pointerdown: down, pointermove: move, pointerup: up, pointercancel: cancelled,
+    pointerleave: leave, wheel: turn,
   };
   for (const [name, react] of Object.entries(events)) svg.addEventListener(name, react, { passive: false });
   return () => {
@@ -197,4 +211,8 @@ export function listen(svg, { openMenu, isSpaceDown }) {
     clearTimeout(long);
     for (const [name, react] of Object.entries(events)) svg.removeEventListener(name, react);
   };
+}
+
+function farFrom([ax, ay], [bx, by]) {
+  return Math.hypot(ax - bx, ay - by);
 }

@@ -2,26 +2,30 @@
 // all selected beams.
 
 import { h } from "/libraries/vue.js";
+import { bounds } from "../document/measure.js";
 import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { flipBeams, ratioText, setBeams, stepBeams } from "./actions.js";
-import { toScreen } from "./camera.js";
-import { editor } from "./editor.js";
+import { anyVisible, toScreen } from "./camera.js";
+import { editor, isLow } from "./editor.js";
+import { placeOf } from "./focus.js";
 import { icon } from "./icons.js";
 import { commonRatio } from "./lengths.js";
 import { factsOf } from "./parts.js";
 import { beside } from "./placement.js";
 
-const SIZE = { width: 236, height: 116 }; // px, about
+const SIZE = { width: 244, height: 120 }; // px, about
 
 export const Popover = {
   render() {
     const { grid } = state.document;
     const { beams } = state.selection;
     const beam = editor.popover?.beam;
-    if (beam === undefined || !beams.includes(beam) || editor.dragging || state.tool !== "select") return null;
+    if (!beams.includes(beam) || editor.dragging || state.tool !== "select") return null;
     const ends = grid.beams[beam].map((k) => toScreen(editor.camera, grid.joints[k]));
-    const [x, y] = beside(ends, SIZE, editor.size);
+    if (!anyVisible(editor.camera, editor.size, [placeOf(grid, { beam })])) return null;
+    const middle = toScreen(editor.camera, bounds(grid).middle);
+    const [x, y] = beside(ends, middle, SIZE, editor.size, isLow() ? 8 : 64);
     const ratio = commonRatio(grid, beams);
     const title = beams.length === 1 ? t("plan.beam", { beam }) : t("plan.beams", { count: beams.length });
     return h("div", {
@@ -57,6 +61,7 @@ function sign(ratio) {
 function button(name, shape, onClick, key = "", disabled = false) {
   const label = t(`plan.${name}`);
   return h("button", {
-    type: "button", class: ["plan-button", name], "aria-label": label, title: key ? `${label} (${key})` : label, disabled, onClick,
+    type: "button", class: ["plan-button", name], "aria-label": label,
+    title: key ? `${label} (${key})` : label, disabled, onClick,
   }, icon(shape, 16));
 }

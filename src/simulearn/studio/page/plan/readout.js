@@ -13,8 +13,9 @@ import { angle, distance } from "../document/measure.js";
 
 const OFFSET = [16, 18]; // px from the pointer
 const OFFSET_TOUCH = [-60, -84]; // px; above a finger
-const WIDE = 220; // px; a readout nearer to the right edge goes to the left
+const WIDE = 310; // px; a readout nearer to the right edge goes to the left
 const HIGH = 120; // px
+const EDGE = 4; // px between a readout and the view's border
 
 const SNAPS = {
   joint: "snapJoint", beam: "snapBeam", crossing: "snapCrossing", align: "snapAlign",
@@ -24,14 +25,15 @@ export const Readout = {
   render() {
     const { pointer, line, cut, dragging, panning, menu } = editor;
     if (panning || menu) return null;
-    if (line && line.points.length > 1) return box(line.next, drawing(line), pointer);
+    if (line && line.points.length > 1 && (pointer || editor.entry?.length || editor.entry?.angle))
+      return box(line.next, drawing(line), pointer);
     if (line) return pointer ? box(pointer.point, [place(line.next)], pointer) : null;
     if (cut) return pointer && box(pointer.point, [lengths(cut)], pointer);
     if (dragging) return pointer && editor.snapped && box(pointer.point, moving(), pointer);
     const part = state.hover;
     if (!pointer || !part || part.goal !== undefined || !exists(part)) return null;
     if (editor.popover && part.beam !== undefined && part.beam === editor.popover.beam) return null;
-    return box(pointer.point, partRows(part), pointer);
+    return box(pointer.point, partRows(part), pointer, "facts");
   },
 };
 
@@ -40,13 +42,14 @@ function exists({ joint, beam }) {
   return joint !== undefined ? joint in grid.joints : beam in grid.beams;
 }
 
-function box(point, rows, pointer) {
+function box(point, rows, pointer, name = "") {
   const [x, y] = pointer ? pointer.screen : toScreen(editor.camera, point);
   const [dx, dy] = pointer?.touch ? OFFSET_TOUCH : OFFSET;
   const left = x + dx + WIDE > editor.size.width ? x - dx : x + dx;
   const above = y + dy + HIGH > editor.size.height;
-  const style = { transform: `translate(${left}px, ${above ? y - dy : y + dy}px)` };
-  const classes = ["plan-readout", { flipped: left < x && !pointer?.touch, above }];
+  const top = above ? y - dy : Math.max(EDGE, y + dy);
+  const style = { transform: `translate(${left}px, ${top}px)` };
+  const classes = ["plan-readout", name, { flipped: left < x && !pointer?.touch, above }];
   return h("div", { class: classes, style, "aria-hidden": "true" }, h("div", rows));
 }
 
@@ -87,12 +90,21 @@ function partRows(part) {
   const { grid } = state.document;
   const marks = marksOf(state.check, grid);
   const mark = part.joint !== undefined ? marks.joints.get(part.joint) : marks.beams.get(part.beam);
-  const title = part.joint !== undefined
-    ? [t("plan.joint", { joint: part.joint }), grid.fixed === part.joint ? ` · ${t("plan.fixed")}` : ""].join("")
-    : `${t("plan.beam", { beam: part.beam })} · ${grid.actuators[part.beam] === 0 ? t("plan.noActuator") : ratioText(grid.actuators[part.beam])}`;
+  const title = part.joint !== undefined ? jointTitle(part.joint) : beamTitle(part.beam);
+  const facts = factsOf(part).map(({ name, value }) => h("span", [h("small", `${name} `), value]));
   return [
     h("div", { class: "title" }, title),
-    h("div", { class: "row" }, factsOf(part).map(({ name, value }) => h("span", [h("small", `${name} `), value]))),
-    ...(mark ? mark.messages.map((text) => h("div", { class: ["message", mark.kind] }, text)) : []),
+    h("div", { class: "row" }, facts),
+    ...(mark ? mark.messages.map((text) => h("div", { class: ["fault", mark.kind] }, text)) : []),
   ];
+}
+
+function jointTitle(k) {
+  const name = t("plan.joint", { joint: k });
+  return state.document.grid.fixed === k ? `${name} · ${t("plan.fixed")}` : name;
+}
+
+function beamTitle(b) {
+  const ratio = state.document.grid.actuators[b];
+  return `${t("plan.beam", { beam: b })} · ${ratio === 0 ? t("plan.noActuator") : ratioText(ratio)}`;
 }

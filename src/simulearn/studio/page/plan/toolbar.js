@@ -6,7 +6,6 @@ import { t } from "../text/text.js";
 import {
   duplicateSelection, fitAll, hasSelection, mirrorSelection, removeSelection, rotateSelection, useTool, zoom,
 } from "./actions.js";
-import { editor } from "./editor.js";
 import { icon } from "./icons.js";
 
 const TOOLS = [["select", "V"], ["draw", "D"], ["split", "S"], ["fix", "X"]];
@@ -15,8 +14,9 @@ export const Toolbar = {
   render() {
     const some = hasSelection();
     const empty = state.document.grid.joints.length === 0;
-    return h("div", { class: "plan-toolbar", role: "toolbar", "aria-label": t("plan.tools"), "aria-orientation": "vertical" }, [
-      h("div", TOOLS.map(([name, key]) => button(name, name, key, () => useTool(name), { "aria-pressed": state.tool === name }))),
+    return h("div", { class: "plan-toolbar", role: "group", "aria-label": t("plan.tools") }, [
+      h("div", TOOLS.map(([name, key]) =>
+        button(name, name, key, () => useTool(name), { "aria-pressed": state.tool === name }))),
       h("div", [
         button("delete", "delete", "Del", removeSelection, { disabled: !some }),
         button("duplicate", "duplicate", "Ctrl D", duplicateSelection, { disabled: !some }),
@@ -32,13 +32,14 @@ export const Zooms = {
   render: () => h("div", { class: "plan-zooms", role: "group", "aria-label": t("plan.zooms") }, [
     button("zoomOut", "minus", "", () => zoom(-1)),
     button("zoomIn", "plus", "", () => zoom(1)),
-    button("fit", "fit", "F", fitAll, { "aria-pressed": undefined, class: ["plan-button", { on: editor.fitted }] }),
+    button("fit", "fit", "F", fitAll),
   ]),
 };
 
 function button(name, shape, key, onClick, more = {}) {
   const label = t(`plan.${name}`);
   return h("button", {
-    type: "button", class: "plan-button", "aria-label": label, title: key ? `${label} (${key})` : label, onClick, ...more,
+    type: "button", class: "plan-button", "aria-label": label, title: key ? `${label} (${key})` : label,
+    onClick, ...more,
   }, icon(shape));
 }

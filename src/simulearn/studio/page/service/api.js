@@ -64,7 +64,9 @@ export const gcode = (grids, printer, names) => post("/api/gcode", { grids, prin
 
 export const startOptimize = (task) => post("/api/optimize", task);
 export const startFea = (grids) => post("/api/fea", { grids });
-export const job = (id, signal) => json(`/api/jobs/${id}`, { signal });
+
+/** Return how far a job is, with the steps that are new after the first `since`. */
+export const job = (id, { since = 0 } = {}) => json(`/api/jobs/${id}?since=${since}`);
 export const cancelJob = (id) => request(`/api/jobs/${id}`, { method: "DELETE" });
 
 /** Return the results of a job that is done, as `parseFrames` gives them. */
@@ -99,5 +101,11 @@ export async function exportFile(grid, format, { engine = "learned", name = "gri
   const response = await request("/api/export", {
     method: "POST", body: { grid, format, engine, name }, accept: "*/*",
   });
-  return { blob: await response.blob(), name: `${name}${format}` };
+  return { blob: await response.blob(), name: fileNameOf(response) ?? `${name}${format}` };
+}
+
+/** Return the file name that an answer has in its header; several files come as one .zip. */
+function fileNameOf(response) {
+  const encoded = /filename\*=UTF-8''([^;]+)/.exec(response.headers.get("Content-Disposition") ?? "")?.[1];
+  return encoded === undefined ? null : decodeURIComponent(encoded);
 }

@@ -68,7 +68,8 @@ function copyText({ revision, saved, document, history }, most) {
   };
   const past = steps(history.past);
   const future = steps(history.future);
-  return `{"revision":${revision},"saved":${saved},"document":${json(document)},"past":${past},"future":${future}}`;
+  const head = `"revision":${revision},"saved":${saved},"document":${json(document)}`;
+  return `{${head},"past":${past},"future":${future}}`;
 }
 
 function remove(id) {

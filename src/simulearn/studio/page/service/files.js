@@ -6,7 +6,7 @@ import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
 
-const ENDINGS = ".json,.csv,.txt,.dxf,.svg,.3dm";
+const ENDINGS = ".json,application/json";
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
 
 /** Let the user choose a file, and open it. */
@@ -23,27 +23,28 @@ export async function open(file) {
   try {
     found = await openFile(file);
   } catch (problem) {
-    state.dialog = {
-      name: "message", title: t("common.openFailed", { file: file.name }), text: problem.message,
-      messages: problem.errors ?? [],
-    };
+    refuse(file, problem);
     return;
   }
   const { grid, goals = [], name, messages = [], printer } = found;
   let document;
   try {
-    const { schema, printer: usual } = emptyDocument();
-    document = readDocument({ schema, name: name ?? "", grid, goals, printer: printer ?? state.document.printer ?? usual });
+    const { schema } = emptyDocument();
+    document = readDocument({ schema, name, grid, goals, printer: printer || state.document.printer });
   } catch (error) {
-    state.dialog = { name: "message", title: t("common.openFailed", { file: file.name }), text: error.message };
+    refuse(file, error);
     return;
   }
   place(document, t("common.didOpen", { file: file.name }));
   if (messages.length) {
-    state.dialog = {
-      name: "message", title: t("common.openNotes", { file: file.name }), text: t("common.openMended"), messages,
-    };
+    const title = t("common.openNotes", { file: file.name });
+    state.dialog = { name: "message", title, text: t("common.openMended"), messages };
   }
+}
+
+function refuse(file, { message, errors = [] }) {
+  const title = t("common.openFailed", { file: file.name });
+  state.dialog = { name: "message", title, text: message, messages: errors };
 }
 
 /** Show another design in place of the current one; undo brings that back. */
@@ -51,7 +52,7 @@ export function place(document, label) {
   edit((before) => (sameGrid(before.grid, document.grid) && before.name === document.name
     && document.goals.length === 0 && before.goals.length === 0 ? before : document), { label });
   select({});
-  notify(label, { label: t("common.undoWord"), run: undo });
+  notify(t("common.placed", { name: document.name }), { label: t("common.undoWord"), run: undo });
 }
 
 /** Save the document as a file: all of it, or the grid alone as the command line reads it. */

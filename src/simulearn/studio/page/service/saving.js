@@ -31,7 +31,7 @@ export function startSaving() {
   globalThis.addEventListener("pagehide", leave);
   globalThis.addEventListener("online", saveNow);
   globalThis.addEventListener("popstate", openAddress);
-  globalThis.addEventListener("hashchange", openAddress);
+  globalThis.addEventListener("hashchange", () => location.hash.startsWith("#design=") && openAddress());
 }
 
 /** Show the document that the page's address names: one that is saved, a shared one or the first. */

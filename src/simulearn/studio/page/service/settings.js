@@ -5,11 +5,13 @@ import { view } from "../store.js";
 
 const KEY = "simulearn.view";
 const KEPT = ["theme", "language", "pane", "share", "side", "tip", "loop", "ghost", "heights", "dimensions"];
+const small = globalThis.matchMedia("(max-width: 599px), (max-height: 559px)"); // phones, either way up
 const dark = globalThis.matchMedia("(prefers-color-scheme: dark)");
 
 /** Take over the settings of the last visit and keep them from now on. */
 export function startSettings() {
   if (navigator.language?.startsWith("de")) view.language = "de";
+  if (small.matches) view.side = false; // the views first
   const kept = read();
   for (const name of KEPT) {
     if (typeof kept[name] === typeof view[name]) view[name] = kept[name];

@@ -60,6 +60,8 @@ export const draw = {
     if (key === "Enter") return enter();
     if (key === "Escape") return escape();
     if (key === "Backspace" && line.points.length) return change(backspace(line));
+    const undoes = key.toLowerCase() === "z" && (event.ctrlKey || event.metaKey) && !event.shiftKey;
+    if (undoes && line.points.length) return change({ ...emptyLine(), points: line.points.slice(0, -1) });
     if (key === "Tab" && line.points.length && !event.shiftKey) return change(toggleField(line));
     if (key.length !== 1 || event.ctrlKey || event.metaKey || event.altKey) return false;
     const next = type(line, key);
@@ -95,7 +97,8 @@ function enter() {
   else if (line.points.length > 1) finish();
   else if (line.points.length === 0) {
     // By keyboard alone a line begins at the part in focus, or in the middle of the view.
-    const start = pointed ? nextPoint() : placeOf(state.document.grid, editor.focus) ?? viewMiddle().map(Math.round);
+    const focused = placeOf(state.document.grid, editor.focus);
+    const start = pointed ? nextPoint() : focused ?? viewMiddle().map(Math.round);
     change({ ...line, points: [start] });
   }
   return true;
@@ -135,10 +138,9 @@ function nextPoint() {
 
 function show() {
   const from = line.points.at(-1) ?? null;
-  if (pointed)
-    editor.snapped = pointed.alt
-      ? { point: pointed.point, kind: "none", guides: [] }
-      : snapOf(pointed, from);
+  if (!pointed) editor.snapped = null;
+  else if (pointed.alt) editor.snapped = { point: pointed.point, kind: "none", guides: [] };
+  else editor.snapped = snapOf(pointed, from);
   const next = pointed || isTyping(line) ? nextPoint() : null;
   const points = next && !(from && samePoint(from, next)) ? [...line.points, next] : line.points;
   editor.line = { points, fixed: line.points.length, joints: newJoints(points), next: next ?? from };
@@ -154,7 +156,7 @@ function snapOf({ point, touch }, from) {
   if (last && Math.hypot(last[0] - point[0], last[1] - point[1]) <= radius / 2)
     return { point: last, kind: "joint", guides: [] };
   return snap(point, {
-    document: state.document, from, grid: snapStep(), radius: Math.min(radius, beamWidth()), angle: 15, lengths: true,
+    document: state.document, from, grid: snapStep(), radius: Math.min(radius, beamWidth()),
   });
 }
 

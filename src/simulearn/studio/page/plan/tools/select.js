@@ -25,7 +25,8 @@ export const selectTool = {
     const part = partUnder(pointer);
     const { selection } = state;
     if (!part) {
-      gesture = { kind: "box", start: pointer.point, selection: pointer.shift ? selection : { joints: [], beams: [] } };
+      const kept = pointer.shift ? selection : { joints: [], beams: [] };
+      gesture = { kind: "box", start: pointer.point, before: selection, selection: kept };
       return;
     }
     const already = isSelected(selection, part);
@@ -77,7 +78,7 @@ export const selectTool = {
     gesture = null;
     clearMarks();
     if (ended?.kind === "move" && state.document === ended.document) load(ended.before, ended.history);
-    if (ended?.kind === "box") select(ended.selection);
+    if (ended?.kind === "box") select(ended.before);
   },
 };
 
@@ -121,11 +122,12 @@ function move(drag, pointer) {
   const found = pointer.alt
     ? { point: wanted, kind: "none", guides: [] }
     : snap(wanted, {
-      document: before, exclude: moving, from: drag.from, grid: snapStep(), angle: 15, lengths: true,
+      document: before, exclude: moving, from: drag.from, grid: snapStep(),
       radius: Math.min(reach(pointer.touch), beamWidth()),
     });
   editor.snapped = found;
-  edit(() => moveJoints(before, moving, minus(found.point, origin)), { label: moveLabel(moving), merge: drag.key });
+  const by = minus(found.point, origin);
+  edit(() => moveJoints(before, moving, by), { label: moveLabel(moving), merge: drag.key });
   drag.document = state.document;
 }
 
@@ -154,5 +156,6 @@ function box(from, pointer) {
   editor.box = [from.start, pointer.point];
   const inside = partsInBox(state.document.grid, editor.box);
   const { joints, beams } = from.selection;
-  select({ joints: [...new Set([...joints, ...inside.joints])], beams: [...new Set([...beams, ...inside.beams])] });
+  const union = (a, b) => [...new Set([...a, ...b])];
+  select({ joints: union(joints, inside.joints), beams: union(beams, inside.beams) });
 }
