@@ -3,7 +3,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { pick } from "../../../src/simulearn/studio/page/shape/picking.js";
-import { createSkin, placeSkin, skinBounds, skinVolume, TONE } from "../../../src/simulearn/studio/page/shape/skin.js";
+import {
+  createSkin, placeSkin, skinBounds, skinVolume, TONE,
+} from "../../../src/simulearn/studio/page/shape/skin.js";
 import { topologyOf } from "../../../src/simulearn/studio/page/shape/topology.js";
 import { bentResult, GRID } from "./shape-support.mjs";
 
@@ -31,7 +33,8 @@ test("stations lie exactly where the actuator ends", () => {
   const result = bentResult();
   const skin = placeSkin(createSkin(result, GRID), result, 0);
   const { tones, positions } = skin.storage;
-  const xs = [...Array(skin.vertexCount).keys()].filter((v) => tones[v] === TONE.bottom).map((v) => positions[3 * v]);
+  const vertices = [...Array(skin.vertexCount).keys()];
+  const xs = vertices.filter((v) => tones[v] === TONE.bottom).map((v) => positions[3 * v]);
   near(Math.min(...xs), -53.6 + 12.5);
   near(Math.max(...xs), -53.6 + 37.5);
   assert.ok(![...tones.subarray(0, skin.vertexCount)].includes(TONE.top));
@@ -59,9 +62,11 @@ test("storage is used again while it is large enough", () => {
 
 test("parts are numbered as in the document", () => {
   const result = { ...bentResult(), joint_numbers: [0, 2, 3], beam_numbers: [1, 4] };
-  const grid = { ...GRID, beams: [[0, 1], [0, 2], [1, 0], [1, 2], [2, 3]], actuators: [1, 0, 1, 1, 0.5], fixed: 3 };
+  const beams = [[0, 1], [0, 2], [1, 0], [1, 2], [2, 3]];
+  const grid = { ...GRID, beams, actuators: [1, 0, 1, 1, 0.5], fixed: 3 };
   const { parts, topology } = createSkin(result, grid);
-  assert.deepEqual(parts.map(({ kind, number }) => `${kind} ${number}`), ["beam 1", "beam 4", "joint 0", "joint 2", "joint 3"]);
+  const names = parts.map(({ kind, number }) => `${kind} ${number}`);
+  assert.deepEqual(names, ["beam 1", "beam 4", "joint 0", "joint 2", "joint 3"]);
   assert.deepEqual(topology.beams.map(({ ratio }) => ratio), [0, 0.5]);
   assert.deepEqual(topology.joints.map(({ fixed }) => fixed), [false, false, true]);
 });

@@ -17,11 +17,14 @@ export function bentResult({ radius = 60, frames = 12 } = {}) {
   const w = HALF_WIDTH;
   for (let f = 0; f < frames; f += 1) {
     for (const [cx, cy] of GRID.joints) for (const z of [-HALF_THICKNESS, HALF_THICKNESS])
-      for (const [x, y] of [[w, w], [-w, w], [-w, -w], [w, -w]]) joints.push(...place(f, [cx + x, cy + y, z]));
+      for (const [x, y] of [[w, w], [-w, w], [-w, -w], [w, -w]])
+        joints.push(...place(f, [cx + x, cy + y, z]));
     for (const start of [-57.2 + w, w]) for (const t of [0, 0.5, 1])
-      for (const [y, z] of [[-w, -2], [w, -2], [-w, 2], [w, 2]]) beams.push(...place(f, [start + t * LENGTH, y, z]));
+      for (const [y, z] of [[-w, -2], [w, -2], [-w, 2], [w, 2]])
+        beams.push(...place(f, [start + t * LENGTH, y, z]));
   }
-  const mises = Array.from({ length: frames * 2 * 16 }, (_, k) => 10 * Math.floor(k / 32) + Math.floor((k % 16) / 4));
+  const stress = (_, k) => 10 * Math.floor(k / 32) + Math.floor((k % 16) / 4); // frame, section
+  const mises = Array.from({ length: frames * 2 * 16 }, stress);
   return {
     ok: true, jointCount: 3, beamCount: 2, joint_numbers: [0, 1, 2], beam_numbers: [0, 1],
     joints: Float32Array.from(joints), beams: Float32Array.from(beams), mises: Float32Array.from(mises),

@@ -103,7 +103,8 @@ test("ranges are calm, and ticks tell them apart", () => {
   assert.deepEqual(calmRange([0, 0]), [0, 1]);
   assert.deepEqual(calmRange([-16.2, 16.2]), [-17, 17]);
   const marks = ticks([0, 0.16]);
-  assert.deepEqual(marks.map(({ value, digits }) => value.toFixed(digits)), ["0.00", "0.04", "0.08", "0.12", "0.16"]);
+  const written = marks.map(({ value, digits }) => value.toFixed(digits));
+  assert.deepEqual(written, ["0.00", "0.04", "0.08", "0.12", "0.16"]);
   const texts = ticks([-5, 47]).map(({ value, digits }) => value.toFixed(digits));
   assert.equal(new Set(texts).size, 5);
 });

@@ -3,7 +3,9 @@
 
 import { readFileSync } from "node:fs";
 import { parseFrames } from "../../../src/simulearn/studio/page/service/frames.js";
-import { createSkin, placeSkin, skinBounds, skinVolume } from "../../../src/simulearn/studio/page/shape/skin.js";
+import {
+  createSkin, placeSkin, skinBounds, skinVolume,
+} from "../../../src/simulearn/studio/page/shape/skin.js";
 
 const { spacing, frames, message, grid } = JSON.parse(readFileSync(0, "utf8"));
 const bytes = Buffer.from(message, "base64");

@@ -51,7 +51,8 @@ export function createAnnotations(container) {
   const update = (entry, item) => {
     const { element } = entry;
     entry.item = item;
-    element.setAttribute("class", `note note-${item.kind} ${item.className ?? ""}${item.onPress ? " operable" : ""}`);
+    const classes = ["note", `note-${item.kind}`, item.className ?? "", item.onPress ? "operable" : ""];
+    element.setAttribute("class", classes.join(" "));
     if (item.kind === "text") element.firstChild.textContent = item.text;
     if (item.onPress) {
       element.setAttribute("tabindex", item.tabindex ?? 0);
@@ -81,14 +82,17 @@ export function createAnnotations(container) {
     draw(project) {
       for (const { item, element } of shown.values()) {
         const places = (item.points ?? (item.kind === "line" ? [item.a, item.b] : [item.at])).map(project);
-        const seen = places.every((place) => place.seen) && (!item.span || apart(...item.span.map(project)) > APART);
+        const wide = !item.span || apart(...item.span.map(project)) > APART;
+        const seen = wide && places.every((place) => place.seen);
         element.style.display = seen ? "" : "none";
         if (!seen) continue;
         const [p, q] = places;
         if (item.kind === "line")
           for (const line of element.children) set(line, { x1: p.x, y1: p.y, x2: q.x, y2: q.y });
         else if (item.kind === "polygon")
-          set(element.firstChild, { points: places.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ") });
+          set(element.firstChild, {
+            points: places.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" "),
+          });
         else {
           const [dx, dy] = item.shift ?? [0, 0];
           element.setAttribute("transform", `translate(${(p.x + dx).toFixed(1)} ${(p.y + dy).toFixed(1)})`);

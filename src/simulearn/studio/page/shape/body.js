@@ -10,17 +10,20 @@ const MARKS = { plain: 0, hover: 120, selected: 255 };
 
 /** Create the drawing of a result.
  *
- * opacity below 1 is for results that lie over another; one: the theme's colour that all of it has;
+ * opacity below 1 is for results that lie over another, 0 for edges alone, which are then seen through
+ * all else; one: the theme's colour that all of it has;
  * spacing: of the stations along a beam, mm.
  */
 export function createBody({ opacity = 1, edges = 0.3, one = null, spacing } = {}) {
   const material = surfaceMaterial({ opacity });
   const lineMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: edges, depthWrite: false });
+  lineMaterial.depthTest = opacity > 0;
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
   const lines = new THREE.LineSegments(new THREE.BufferGeometry(), lineMaterial);
   const outline = new THREE.Mesh(mesh.geometry, outlineMaterial());
   const group = new THREE.Group();
   group.add(mesh, lines, outline);
+  mesh.visible = opacity > 0;
   for (const object of group.children) object.frustumCulled = false;
   group.visible = false;
   let [skin, shown, frame, by, reference, range] = [null, null, 11, "actuator", null, [0, 1]];
@@ -127,7 +130,8 @@ export function createBody({ opacity = 1, edges = 0.3, one = null, spacing } = {
       lineMaterial.opacity = edges * (1 - 0.6 * dim);
     },
     setTheme(theme) {
-      const same = one && Object.fromEntries(["beam", "joint", "top", "bottom"].map((name) => [name, theme[one]]));
+      const names = ["beam", "joint", "top", "bottom"];
+      const same = one && Object.fromEntries(names.map((name) => [name, theme[one]]));
       paintWith(material, { ...theme, ...same });
       outline.material.uniforms.accent.value.fromArray(theme.accent);
       lineMaterial.color = plain(theme[one ?? "text"]);

@@ -126,7 +126,9 @@ export function createCamera(element, { onChange, still = () => false }) {
       if (points.length === 0) return;
       const now = motion?.to ?? state();
       const [azimuth, polar] = view ? VIEWS[view] ?? view : [now.azimuth, now.polar];
-      const back = [Math.sin(azimuth) * Math.sin(polar), -Math.cos(azimuth) * Math.sin(polar), Math.cos(polar)];
+      const back = [
+        Math.sin(azimuth) * Math.sin(polar), -Math.cos(azimuth) * Math.sin(polar), Math.cos(polar),
+      ];
       const right = [Math.cos(azimuth), Math.sin(azimuth), 0];
       const up = [
         -Math.sin(azimuth) * Math.cos(polar), Math.cos(azimuth) * Math.cos(polar), Math.sin(polar),
@@ -154,7 +156,8 @@ export function createCamera(element, { onChange, still = () => false }) {
     orbit(azimuth, polar) {
       touched = true;
       const now = motion?.to ?? state();
-      go({ ...now, azimuth: now.azimuth + azimuth, polar: Math.min(Math.PI, Math.max(0, now.polar + polar)) }, false);
+      const tilt = Math.min(Math.PI, Math.max(0, now.polar + polar));
+      go({ ...now, azimuth: now.azimuth + azimuth, polar: tilt }, false);
     },
     zoom(factor) {
       touched = true;

@@ -22,7 +22,8 @@ export function dimensionItems({ low, high }, text) {
 function dimension(id, a, b, tick, text) {
   const shifted = (point, sign) => point.map((x, axis) => x + sign * tick[axis]);
   const end = (name, p) => ({
-    id: `${id}-${name}`, kind: "line", className: "note-dimension", a: shifted(p, 1), b: shifted(p, -1), span: [a, b],
+    id: `${id}-${name}`, kind: "line", className: "note-dimension", span: [a, b],
+    a: shifted(p, 1), b: shifted(p, -1),
   });
   return [
     { id: `${id}-line`, kind: "line", className: "note-dimension", a, b, span: [a, b] },

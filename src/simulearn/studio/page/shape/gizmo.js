@@ -21,7 +21,8 @@ export function gizmoItems(point, size, project, { onPress, name, active = null 
     const id = `plane-${NAMES[normal]}`;
     planes.push({
       id, kind: "polygon", points, className: `note-handle ${NAMES[normal]} ${active === id ? "active" : ""}`,
-      name: name(NAMES[a] + NAMES[b]), tabindex: -1, onPress: (event) => onPress(event, { id, normal: AXES[normal] }),
+      name: name(NAMES[a] + NAMES[b]), tabindex: -1,
+      onPress: (event) => onPress(event, { id, normal: AXES[normal] }),
     });
   }
   const items = [];
@@ -30,7 +31,9 @@ export function gizmoItems(point, size, project, { onPress, name, active = null 
     if (Math.hypot(end.x - origin.x, end.y - origin.y) < FLAT * LENGTH) continue;
     const id = `axis-${NAMES[axis]}`;
     const className = `note-handle ${NAMES[axis]} ${active === id ? "active" : ""}`;
-    const press = { name: name(NAMES[axis]), tabindex: -1, onPress: (event) => onPress(event, { id, axis: AXES[axis] }) };
+    const press = {
+      name: name(NAMES[axis]), tabindex: -1, onPress: (event) => onPress(event, { id, axis: AXES[axis] }),
+    };
     items.push(
       { id, kind: "line", a: along(axis, 0.12), b: along(axis, 1), className, ...press },
       { id: `${id}-tip`, kind: "dot", at: along(axis, 1), className, ...press },

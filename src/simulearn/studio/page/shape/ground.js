@@ -32,7 +32,9 @@ void main() {
 /** Create the ground of a scene. */
 export function createGround() {
   const group = new THREE.Group();
-  const lineMaterial = new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
+  const lineMaterial = new THREE.LineBasicMaterial({
+    vertexColors: true, transparent: true, depthWrite: false,
+  });
   const lines = new THREE.LineSegments(new THREE.BufferGeometry(), lineMaterial);
   lines.renderOrder = 1;
   // The darker of the shadow and what is there: parts over one another darken the ground once.
@@ -90,7 +92,6 @@ export function createGround() {
       extent = next;
       build(low, high);
     },
-    follow(mesh) { shadow.geometry = mesh.geometry; },
     setTheme(next) {
       theme = next;
       lineMaterial.color = plain([1, 1, 1]);
@@ -100,7 +101,6 @@ export function createGround() {
     },
     /** Draw what is dear, the shadow, or not. */
     setPlain(on) { shadow.visible = !on; },
-    setVisible(on) { group.visible = on; },
     dispose() {
       lines.geometry.dispose();
       lineMaterial.dispose();

@@ -16,12 +16,14 @@ varying vec4 vColour;
 varying vec3 vValue;
 void main() {
   int k = int(tone + 0.5);
-  vec3 colour = k == 0 ? palette[0] : k == 1 ? palette[1] : k == 2 ? palette[2] : k == 3 ? palette[3] : palette[4];
+  vec3 colour = k == 0 ? palette[0] : k == 1 ? palette[1] : k == 2 ? palette[2]
+    : k == 3 ? palette[3] : palette[4];
   float sky = 0.5 + 0.5 * normal.z;
   vec3 seen = normalize(normalMatrix * normal);
   float key = max(0.0, 0.35 + 0.65 * dot(seen, vec3(-0.40, 0.55, 0.73)));
   vColour = vec4(colour, min(1.04, ambient + 0.18 * sky + 0.38 * key));
-  vValue = vec3((value - range.x) / max(range.y - range.x, 1e-9), k == 1 || k == 2 ? joints : 1.0, mark * 0.22);
+  float share = (value - range.x) / max(range.y - range.x, 1e-9);
+  vValue = vec3(share, k == 1 || k == 2 ? joints : 1.0, mark * 0.22);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 
@@ -34,7 +36,8 @@ varying vec3 vValue;
 void main() {
   vec3 colour = vColour.rgb;
   if (mapped > 0.5) {
-    float t = clamp(vValue.x, 0.0, 1.0) * 0.99609375 + 0.001953125; // from the first texel's middle to the last's
+    // from the first texel's middle to the last's
+    float t = clamp(vValue.x, 0.0, 1.0) * 0.99609375 + 0.001953125;
     colour = mix(colour, texture2D(map, vec2(t, 0.5)).rgb, vValue.y);
   }
   colour = mix(colour, accent, vValue.z) * vColour.a;

@@ -22,8 +22,10 @@ const PREFERS_STILL = globalThis.matchMedia("(prefers-reduced-motion: reduce)");
 /** Return what is drawn: { result, grid, label } of the preview, else of the answer; or null. */
 function source() {
   const { preview, answer } = state;
-  if (preview?.result?.ok !== false && preview?.result)
-    return { result: preview.result, grid: preview.grid ?? preview.document?.grid ?? preview.result.grid, label: preview.label };
+  if (preview?.result && preview.result.ok !== false) {
+    const { result, label } = preview;
+    return { result, grid: preview.grid ?? preview.document?.grid ?? result.grid, label };
+  }
   return answer ? { result: answer.result, grid: answer.document.grid, label: "" } : null;
 }
 
@@ -43,7 +45,9 @@ export const Shape = {
     const said = ref("");
     const shown = shallowRef(null); // what the viewer has: { result, grid, label }
     const coloured = shallowRef({ by: "actuator", range: [0, 1] });
-    const errors = computed(() => state.check?.document.grid === state.document.grid && state.check.errors.length > 0);
+    const errors = computed(() => (
+      state.check?.document.grid === state.document.grid && state.check.errors.length > 0
+    ));
     const other = computed(otherResult);
     const printing = computed(() => state.tab === "print" && Boolean(state.print?.toolpath));
     const goals = computed(() => state.tab === "goals");
@@ -109,14 +113,15 @@ export const Shape = {
       watch(() => view.playing, (on) => viewer.value.setPlaying(on));
       watch(() => view.frame, (frame) => viewer.value.setFrame(frame), { flush: "sync" });
       watch(() => [
-        view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value, state.pickVertex,
-        goals.value && state.document.goals, state.selection.goal, state.hover?.goal,
+        view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value,
+        state.pickVertex, goals.value && state.document.goals, state.selection.goal, state.hover?.goal,
       ], notes);
       watch(() => [printing.value && state.print.toolpath, state.print?.layer, state.print?.travels], () => {
-        viewer.value.setPrint(printing.value ? state.print.toolpath : null, state.print?.toolpath?.bed ?? null);
-        if (printing.value) viewer.value.setLayer(state.print.layer, state.print.travels);
+        const path = printing.value ? state.print.toolpath : null;
+        viewer.value.setPrint(path, path?.bed ?? null);
+        if (path) viewer.value.setLayer(state.print.layer, state.print.travels);
       }, { immediate: true });
-      watch(() => (errors.value || (stale.value && !state.preview)), (is) => {
+      watch(() => !state.preview && (errors.value || stale.value), (is) => {
         clearTimeout(dimmer);
         if (is) dimmer = setTimeout(() => { late.value = true; }, LATE);
         else late.value = false;
@@ -166,7 +171,9 @@ export const Shape = {
       viewer.value = null;
     });
     const possible = (name) => hasValues(name, shown.value?.result, other.value);
-    return () => h("section", { class: ["shape", { late: late.value }], "aria-label": t("shape.title"), onKeydown }, [
+    return () => h("section", {
+      class: ["shape", { late: late.value }], "aria-label": t("shape.title"), onKeydown,
+    }, [
       h("div", { class: ["shape-view", { broken: broken.value }] }, [
         h("div", {
           class: "shape-canvas", ref: container, tabindex: 0, role: "application",
@@ -182,7 +189,8 @@ export const Shape = {
           !state.busy && h("p", t("shape.emptyHint")),
         ]),
         !broken.value && !printing.value && h(Summary, {
-          result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value, invalid: errors.value,
+          result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value,
+          invalid: late.value && errors.value,
         }),
         !broken.value && (shown.value || printing.value) && h(Toolbar, {
           run: (name) => viewer.value.command(name), printing: printing.value,

@@ -17,8 +17,8 @@ let idle = 0;
  *
  * Where the result has its `grid`, its actuators are coloured. frame: another moment than the last.
  */
-export function thumbnail(result, { width = 160, height = 100, grid = result.grid ?? null, frame = LAST } = {}) {
-  const picture = queue.then(() => draw(result, grid, width, height, frame));
+export function thumbnail(result, { width = 160, height = 100, grid = result.grid, frame = LAST } = {}) {
+  const picture = queue.then(() => draw(result, grid ?? null, width, height, frame));
   queue = picture.then(rest, rest);
   return picture;
 }
