@@ -51,6 +51,9 @@ export const Playback = {
       else return;
       event.preventDefault();
     };
+    // While playing, words change with the frames: new ones for every drawing could not be read, and in
+    // software to paint them takes longer than the shape.
+    const words = () => moment(view.playing ? Math.floor(view.frame) : view.frame);
     return () => h("div", { class: "shape-timeline" }, [
       h("button", {
         type: "button", class: "shape-button play", disabled: props.disabled,
@@ -64,7 +67,7 @@ export const Playback = {
       h("div", { class: "shape-slider" }, [
         h("input", {
           type: "range", min: 0, max: LAST, step: 0.01, value: view.frame, disabled: props.disabled,
-          "aria-label": t("shape.moment"), "aria-valuetext": moment(view.frame),
+          "aria-label": t("shape.moment"), "aria-valuetext": words(),
           onInput: (event) => show(snapFrame(Number(event.target.value))),
           onKeydown,
         }),
@@ -81,7 +84,7 @@ export const Playback = {
           ...(props.snaps ?? []).map(({ released }) => mark(10 * released, "snap", t("shape.snapsHere"))),
         ]),
       ]),
-      h("output", { class: "shape-moment" }, props.disabled ? "" : moment(view.frame)),
+      h("output", { class: "shape-moment" }, props.disabled ? "" : words()),
     ]);
   },
 };
