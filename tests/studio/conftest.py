@@ -6,7 +6,7 @@ import pytest
 
 import browsing
 
-PATIENCE = 30_000  # ms that something may take on a busy machine
+PATIENCE = 15_000  # ms that something may take on a busy machine
 ERRORS_OF_OTHERS = ("favicon",)
 
 

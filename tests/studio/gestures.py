@@ -78,6 +78,12 @@ def beam(page: Page, number: int) -> Locator:
     return plan(page).get_by_role("option", name=re.compile(rf"^Beam {number},"))
 
 
+def placed(locator: Locator, *numbers: float) -> None:
+    """Wait until the name of a part says these numbers, in whatever way they are written."""
+    words = [("[-−]" if n < 0 else "") + rf"{abs(n):g}(\.0)?" for n in numbers]
+    expect(locator).to_have_accessible_name(re.compile(rf"[ ,]{', '.join(words)}( mm)?(,|$)"))
+
+
 def at(page: Page, point: tuple[float, float]) -> tuple[float, float]:
     """Return where a point of the plan, in mm, is in the window."""
     x, y = page.locator(".plan-world").evaluate(PLACE, list(point))
