@@ -14,10 +14,11 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, sync_playwright
 
-# Software rendering, so that every machine gives the same picture; nothing goes out to the network.
+# As on a machine without a graphics card, so that every machine gives the same picture; nothing goes
+# out to the network.
 OPTIONS = [
     "--no-sandbox",
-    "--use-angle=swiftshader",
+    "--disable-gpu",
     "--enable-unsafe-swiftshader",
     "--disable-background-networking",
     "--disable-component-update",

@@ -45,9 +45,13 @@ async (changes) => {
   for (const change of changes) {
     const begun = performance.now();
     edit((document) => ({ ...document, goals: [], grid: change }), { label: "change" });
-    while (state.check?.document.grid !== state.document.grid) await frame();
-    const drawn = window.drawnFrames;
-    for (let k = 0; k < 20 && window.drawnFrames === drawn; k += 1) await frame();
+    let before = window.drawnFrames;
+    while (state.check?.document.grid !== state.document.grid) {
+      before = window.drawnFrames;
+      await frame();
+    }
+    if (state.check.errors.length > 0) throw new Error(state.check.errors[0].message);
+    while (window.drawnFrames === before) await frame();
     spent.push(performance.now() - begun);
     await new Promise((done) => setTimeout(done, 60));
   }
@@ -141,7 +145,7 @@ def known() -> list[Any]:
 def unknown() -> list[Any]:
     """Return designs of topologies of which none was seen before."""
     random = np.random.default_rng(5)
-    whole = make("saddle", (3, 3), 45.0)
+    whole = make("bowl", (3, 3), 45.0)
     gone = {tuple(sorted(random.choice(24, 3, replace=False).tolist())) for _ in range(40)}
     return [grid_to_dict(drop_beams(whole, list(beams))) for beams in sorted(gone)]
 

@@ -75,8 +75,8 @@ test("a failed job throws its problem", async () => {
 });
 
 test("a cancelled job is asked for its result, also without a connection for a while", async () => {
-  const answers = [running([1]), null, running([1]), running([2], { state: "cancelled", result: { grid: 2 } })];
-  const asked = serve(answers);
+  const end = running([2], { state: "cancelled", result: { grid: 2 } });
+  const asked = serve([running([1]), null, running([1]), end]);
   const job = runJob(begin, (report) => { if (report.steps.length === 1) job.cancel(); }, wait);
   const answer = await job.finished;
   assert.deepEqual(answer.result, { grid: 2 });
@@ -99,6 +99,7 @@ test("a busy server is asked a few times to begin", async () => {
 
 test("a job that is cancelled before the server takes it never begins", async () => {
   serve([]);
-  const job = runJob(async () => { throw new Problem({ status: 429 }); }, undefined, async () => job.cancel());
+  const busy = async () => { throw new Problem({ status: 429 }); };
+  const job = runJob(busy, undefined, async () => job.cancel());
   assert.equal((await job.finished).state, "cancelled");
 });

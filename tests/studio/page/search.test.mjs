@@ -12,8 +12,8 @@ const shifted = (grid, [dx, dy]) => ({ ...grid, joints: grid.joints.map(([x, y])
 test("a design of the server comes back to its place, joints that stayed exactly", () => {
   const { grid } = square({ fixed: 2 });
   const made = shifted(grid, [-60, -60 + 1e-12]);
-  const moved = { ...made, joints: made.joints.map((joint, k) => (k === 1 ? [joint[0] + 5, joint[1]] : joint)) };
-  const back = placedLike(frozen(grid), moved);
+  const joints = made.joints.map(([x, y], k) => (k === 1 ? [x + 5, y] : [x, y]));
+  const back = placedLike(frozen(grid), { ...made, joints });
   assert.deepEqual(back.joints[1], [65, 0]);
   for (const k of [0, 2, 3]) assert.equal(back.joints[k], grid.joints[k]);
   assert.equal(back.material, grid.material);
@@ -33,7 +33,8 @@ test("taking a design keeps the goals of now, or those it was made for if parts 
   const now = addGoal(origin, ["joint", 2, "centre"], [4, 5, 6]);
   const made = { ...origin.grid, actuators: [1, 0, 0, 0] };
   assert.equal(withDesign(frozen(now), origin, made).goals, now.goals);
-  const other = { ...now, grid: { ...now.grid, joints: now.grid.joints.slice(1), beams: [[0, 1]], actuators: [0] } };
+  const grid = { ...now.grid, joints: now.grid.joints.slice(1), beams: [[0, 1]], actuators: [0] };
+  const other = { ...now, grid };
   const taken = withDesign(frozen(other), origin, made);
   assert.deepEqual([taken.goals, taken.grid], [origin.goals, made]);
 });
@@ -43,7 +44,10 @@ const step = (designs, error, { phase = 0, ratio = 0 } = {}) => ({
 });
 
 test("the curve goes down in steps, and begins anew at targets that were corrected", () => {
-  const steps = [step(1, 9), step(10, 5), step(20, 7), step(30, 4), step(40, 6, { phase: 1 }), step(50, 6, { phase: 1 })];
+  const phase = 1;
+  const steps = [
+    step(1, 9), step(10, 5), step(20, 7), step(30, 4), step(40, 6, { phase }), step(50, 6, { phase }),
+  ];
   const { points, corrections } = bestSoFar(steps);
   assert.deepEqual(points, [[1, 9], [10, 9], [10, 5], [30, 5], [30, 4], [40, 4], [40, 6], [50, 6]]);
   assert.deepEqual(corrections, [40]);
@@ -58,7 +62,7 @@ test("a curve of many steps has a bounded number of points and keeps its end", (
 });
 
 test("an axis ends at a round number", () => {
-  assert.deepEqual([0.03, 1, 1.2, 4.9, 5.1, 99, 0].map(roundUp), [0.05, 1, 2, 5, 10, 100, 1]);
+  assert.deepEqual([0.25, 1, 1.2, 4.9, 6.1, 99, 0].map(roundUp), [0.3, 1, 2, 6, 8, 100, 1]);
 });
 
 test("stages are the different designs in their order; the best is the last", () => {

@@ -58,7 +58,7 @@ function toggle(label, on, set, disabled = false) {
   ]);
 }
 
-function outcome(fea, distance) {
+function outcome(fea, distance, current) {
   const { reference, result } = fea;
   const bound = reference?.bound_mm ?? null;
   const quick = reference?.seconds;
@@ -88,7 +88,7 @@ function outcome(fea, distance) {
     quick && slow > quick && h("p", { class: "note" },
       t("panels.faster", { times: times(slow / quick) })),
     result.stable === false && note("warning", t("panels.notStable")),
-    h("div", { class: "toggles" }, [
+    current && h("div", { class: "toggles" }, [ // only a shape of the present design is drawn over it
       toggle(t("panels.overlay"), view.overlay, (on) => { view.overlay = on; }),
       toggle(t("panels.colourDeviation"), view.colour === "deviation", (on) => {
         view.colour = on ? "deviation" : "actuator";
@@ -126,7 +126,7 @@ export const Check = {
           invalid && !checking() && h("p", { class: "note" }, t("panels.checkNeedsShape")),
           fea && !current && note("warning", t("panels.checkEarlier")),
           checking() && progress(fea),
-          fea?.state === "done" && outcome(fea, distance.value),
+          fea?.state === "done" && outcome(fea, distance.value, current),
           fea?.state === "cancelled" && note("info", t("panels.checkCancelled")),
           fea?.state === "failed" && (fea.problem ? problemNote(t("panels.checkFailed"), fea.problem)
             : note("error", t("panels.checkFailed"), [

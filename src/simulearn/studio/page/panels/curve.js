@@ -16,11 +16,15 @@ export function curve(steps, at = null) {
   const designs = Math.max(1, points.at(-1)[0]);
   const x = (value) => EDGE.left + (value / designs) * (SIZE.width - EDGE.left - EDGE.right);
   const y = (value) => SIZE.height - EDGE.bottom - (value / most) * (SIZE.height - EDGE.top - EDGE.bottom);
-  const path = points.map(([n, error], k) => `${k ? "L" : "M"}${x(n).toFixed(1)} ${y(error).toFixed(1)}`).join("");
+  const corner = ([n, error]) => `${x(n).toFixed(1)} ${y(error).toFixed(1)}`;
   const digits = most < 1 ? 2 : most < 10 ? 1 : 0;
   const line = (value) => [
-    h("line", { class: "curve-line", x1: EDGE.left, x2: SIZE.width - EDGE.right, y1: y(value), y2: y(value) }),
-    h("text", { class: "curve-number", x: EDGE.left - 6, y: y(value) + 4, "text-anchor": "end" }, number(value, digits)),
+    h("line", {
+      class: "curve-line", x1: EDGE.left, x2: SIZE.width - EDGE.right, y1: y(value), y2: y(value),
+    }),
+    h("text", {
+      class: "curve-number", x: EDGE.left - 6, y: y(value) + 4, "text-anchor": "end",
+    }, number(value, digits)),
   ];
   const marked = at === null ? points.at(-1) : points.findLast(([n]) => n <= at) ?? points[0];
   return h("svg", {
@@ -35,7 +39,7 @@ export function curve(steps, at = null) {
     ...corrections.map((n) => h("line", {
       class: "curve-correction", x1: x(n), x2: x(n), y1: EDGE.top, y2: SIZE.height - EDGE.bottom,
     }, [h("title", t("panels.correction"))])),
-    h("path", { class: "curve-path", d: path }),
+    h("path", { class: "curve-path", d: `M${points.map(corner).join("L")}` }),
     h("circle", { class: "curve-mark", cx: x(at === null ? marked[0] : at), cy: y(marked[1]), r: 3.5 }),
   ]);
 }

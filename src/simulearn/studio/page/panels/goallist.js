@@ -1,13 +1,12 @@
-// The goals of a document: added by picking a point or from a list, moved, weighted, removed.
+// The goals of a document: how far each is missed, its target and weight.
 
-import { computed, h, onBeforeUnmount, ref } from "/libraries/vue.js";
-import {
-  addGoal, goalErrors, goalOf, moveGoal, removeGoal, setWeight, vertexPoint,
-} from "../document/goals.js";
+import { computed, h, nextTick } from "/libraries/vue.js";
+import { goalErrors, moveGoal, removeGoal, setWeight } from "../document/goals.js";
 import { mm } from "../service/format.js";
-import { edit, endMerge, select, stale, state, view } from "../store.js";
+import { edit, endMerge, select, stale, state } from "../store.js";
 import { t } from "../text/text.js";
-import { button, iconButton } from "./controls.js";
+import { Adding } from "./adding.js";
+import { iconButton } from "./controls.js";
 import { NumberField } from "./fields.js";
 import { icon } from "./icons.js";
 import { note, Reader } from "./notes.js";
@@ -16,83 +15,6 @@ import { vertexWords } from "./vertices.js";
 const AXES = ["x", "y", "z"];
 const DIGITS = 2; // of a target, mm
 const MOST_WEIGHT = 1000; // only the ratios of weights count
-
-/** Return the result of the current design, or null while there is none. */
-const current = () => (stale.value ? null : state.answer?.result ?? null);
-
-const rounded = (point) => point.map((x) => Number(x.toFixed(DIGITS)));
-
-/** Add a goal at the present place of a vertex, and select it. */
-function add(vertex) {
-  const point = current() && vertexPoint(current(), vertex);
-  if (!point) return;
-  if (goalOf(state.document, vertex) === null)
-    edit((document) => addGoal(document, vertex, rounded(point)), {
-      label: t("panels.didAddGoal", { name: vertexWords(vertex) }),
-    });
-  select({ goal: goalOf(state.document, vertex) });
-}
-
-/** The button that waits for a point to be picked in the shape, and a choice for keyboards. */
-const Adding = {
-  setup() {
-    const chosen = ref("");
-    const stop = () => { state.pickVertex = null; };
-    const key = (event) => {
-      if (event.key !== "Escape" || !state.pickVertex) return;
-      event.preventDefault();
-      stop();
-    };
-    globalThis.addEventListener("keydown", key);
-    onBeforeUnmount(() => {
-      globalThis.removeEventListener("keydown", key);
-      stop();
-    });
-    const pick = () => {
-      if (state.pickVertex) return stop();
-      if (view.pane === "plan") view.pane = "shape"; // the shape has to be seen to pick in it
-      state.pickVertex = (vertex) => {
-        stop();
-        add(vertex);
-      };
-    };
-    const points = () => {
-      const { grid, goals } = state.document;
-      const free = (vertex) => goals.length === 0 || goalOf(state.document, vertex) === null;
-      const option = (vertex) => h("option", { value: JSON.stringify(vertex) }, vertexWords(vertex));
-      const joints = grid.joints.map((_, k) => ["joint", k, "centre"]).filter((v) => v[1] !== grid.fixed && free(v));
-      const beams = grid.beams.map((_, b) => ["beam", b, "middle", "centre"]).filter(free);
-      return [
-        h("option", { value: "" }, t("panels.choosePoint")),
-        h("optgroup", { label: t("panels.joints") }, joints.map(option)),
-        h("optgroup", { label: t("panels.beams") }, beams.map(option)),
-      ];
-    };
-    const addChosen = (event) => {
-      event.preventDefault();
-      if (chosen.value) add(JSON.parse(chosen.value));
-      chosen.value = "";
-    };
-    return () => {
-      const picking = Boolean(state.pickVertex);
-      const ready = current() !== null;
-      return h("div", { class: "adding" }, [
-        button(picking ? t("panels.pickCancel") : t("panels.pick"), pick, {
-          glyph: picking ? "close" : "target", kind: picking || state.document.goals.length ? "" : "primary", disabled: !ready && !picking,
-        }),
-        picking && h("p", { class: "picking", role: "status" }, t("panels.picking")),
-        h("form", { class: "adding-list", onSubmit: addChosen }, [
-          h("select", {
-            class: "select", "aria-label": t("panels.addFrom"), value: chosen.value, disabled: !ready,
-            onChange: (event) => { chosen.value = event.target.value; },
-          }, points()),
-          h("button", { type: "submit", class: "button", disabled: !chosen.value || !ready }, t("panels.add")),
-        ]),
-        !current() && !state.answer && h("p", { class: "note" }, t("panels.addLater")),
-      ]);
-    };
-  },
-};
 
 function goal({ vertex, target, weight }, k, error) {
   const name = vertexWords(vertex);
@@ -113,13 +35,17 @@ function goal({ vertex, target, weight }, k, error) {
     h("div", { class: "goal-head" }, [
       h("button", {
         type: "button", class: "goal-name", "aria-pressed": String(selected),
-        "aria-label": error === null ? t("panels.selectGoal", { name }) : t("panels.goalFacts", { name, mm: mm(error) }),
+        "aria-label": error === null ? t("panels.selectGoal", { name })
+          : t("panels.goalFacts", { name, mm: mm(error) }),
         onClick: () => select({ goal: k }),
       }, [h("span", { class: "goal-mark", "aria-hidden": "true" }), h("span", name)]),
       h("span", { class: ["goal-error numbers", { old: stale.value }] }, error === null ? "–" : mm(error)),
-      iconButton("trash", t("panels.removeGoal", { name }), () => {
+      iconButton("trash", t("panels.removeGoal", { name }), async (event) => {
+        const list = event.currentTarget.closest("ol");
         edit((document) => removeGoal(document, k), { label: t("panels.didRemoveGoal", { name }) });
         select({});
+        await nextTick(); // the focus goes on to the goal that took its place
+        [...list.querySelectorAll(".goal-name")].slice(0, k + 1).at(-1)?.focus();
       }, { class: "icon-button small" }),
     ]),
     h("div", { class: "goal-fields" }, [
@@ -152,7 +78,7 @@ export const GoalList = {
     ));
     const Read = Reader(() => {
       const { mean } = errors.value;
-      return mean === null || state.document.goals.length === 0 ? "" : t("panels.errorRead", { mm: mm(mean) });
+      return mean === null ? "" : t("panels.errorRead", { mm: mm(mean) });
     });
     const head = () => {
       const { each, mean } = errors.value;

@@ -23,7 +23,9 @@ export const Layers = {
     return () => {
       const { toolpath, layer, travels } = state.print;
       const all = toolpath.layers.length;
-      const value = t("panels.layerOf", { n: layer, all, mm: `${number(toolpath.layers[layer - 1].z, 2)} mm` });
+      const top = `${number(toolpath.layers[layer - 1].z, 2)} mm`;
+      const value = t("panels.layerOf", { n: layer, all, mm: top });
+      const length = (role) => lengths.value.get(role);
       return h("section", { class: ["part-section", { old: props.old }], "aria-label": t("panels.layer") }, [
         h("div", { class: "layer-head" }, [
           h("h2", t("panels.layer")), h("span", { class: "note numbers" }, value),
@@ -41,16 +43,17 @@ export const Layers = {
         ]),
         h("label", { class: "checkbox" }, [
           h("input", {
-            type: "checkbox", role: "switch", checked: travels, onChange: (event) => showTravels(event.target.checked),
+            type: "checkbox", role: "switch", checked: travels,
+            onChange: (event) => showTravels(event.target.checked),
           }), t("panels.travels"),
         ]),
         h("h3", t("panels.legend")),
         h("ul", { class: "legend" }, toolpath.roles.map((role) => h("li", {
-          key: role, class: { none: lengths.value.get(role) === 0 },
+          key: role, class: { none: length(role) === 0 },
         }, [
           h("span", { class: ["swatch", swatch(role, layer, all)], "aria-hidden": "true" }),
           h("span", t(`panels.role_${role}`)),
-          h("span", { class: "numbers" }, lengths.value.get(role) === 0 ? "–" : metres(lengths.value.get(role))),
+          h("span", { class: "numbers" }, length(role) ? metres(length(role)) : "–"),
         ]))),
       ]);
     };

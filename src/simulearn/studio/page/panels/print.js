@@ -72,7 +72,8 @@ const Download = {
     };
     return () => h("div", { class: "download" }, [
       button(t(busy.value ? "panels.downloading" : "panels.download"), save, {
-        glyph: "download", kind: "primary", disabled: busy.value || !freshPrint() || state.print.state !== "ready",
+        glyph: "download", kind: "primary",
+        disabled: busy.value || !freshPrint() || state.print.state !== "ready",
       }),
       saved.value && h("p", { class: "note", role: "status" }, t("panels.downloaded", { file: saved.value })),
       problem.value && problemNote(t("panels.downloadFailed"), problem.value),
@@ -90,7 +91,7 @@ export const Print = {
     onBeforeUnmount(dropPrint);
     const Read = Reader(() => (
       freshPrint() && state.print.state === "ready"
-        ? `${t("panels.printTime")} ${clock(state.print.facts.seconds)}, ${grams(state.print.facts.filament_g)}` : ""
+        ? `${t("panels.printTime")} ${clock(state.print.facts.seconds)}` : ""
     ));
     return () => {
       const { print } = state;
@@ -101,11 +102,16 @@ export const Print = {
           choice(),
           !print && h("p", { class: "note" }, t("panels.printEmpty")),
           print?.state === "failed" && problemNote(t("panels.printFailed"), print.problem),
-          print && !print.facts && print.state === "asking" && h("p", { class: "note", role: "status" }, t("panels.printAsking")),
-          print?.facts && h("div", { class: ["print-facts", { old }] }, [printFacts(print), ...warnings(print.facts.warnings)]),
+          print && !print.facts && print.state === "asking"
+            && h("p", { class: "note", role: "status" }, t("panels.printAsking")),
+          print?.facts && h("div", { class: ["print-facts", { old }] }, [
+            printFacts(print), ...warnings(print.facts.warnings),
+          ]),
         ]),
         print?.toolpath && h(Layers, { old }),
-        print?.facts && h("section", { class: "part-section", "aria-label": t("panels.download") }, [h(Download)]),
+        print?.facts && h("section", { class: "part-section", "aria-label": t("panels.download") }, [
+          h(Download),
+        ]),
       ]);
     };
   },

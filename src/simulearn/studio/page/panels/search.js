@@ -1,17 +1,15 @@
-// The automatic search: what may change, its progress, what it found and the way there.
+// The automatic search: what may change, and its progress.
 
-import { h, onBeforeUnmount, reactive, ref, watch } from "/libraries/vue.js";
-import { withDesign } from "../service/designs.js";
-import { mm, number, seconds } from "../service/format.js";
-import {
-  discardSearch, hideStage, searching, showStage, startSearch, stopSearch,
-} from "../service/search.js";
-import { edit, notify, select, stale, state, undo } from "../store.js";
+import { h, reactive } from "/libraries/vue.js";
+import { mm, number } from "../service/format.js";
+import { searching, startSearch, stopSearch } from "../service/search.js";
+import { stale, state } from "../store.js";
 import { t } from "../text/text.js";
-import { button, iconButton } from "./controls.js";
+import { button } from "./controls.js";
 import { curve } from "./curve.js";
-import { NumberField, facts } from "./fields.js";
-import { note, problemNote, Reader, sentence, warnings } from "./notes.js";
+import { NumberField } from "./fields.js";
+import { Found } from "./found.js";
+import { note, problemNote, Reader, reasonOf } from "./notes.js";
 
 const LIMIT = 30; // s that a search usually may take
 const LEAST = 1; // s
@@ -37,11 +35,12 @@ function form(again) {
       checkbox(t("panels.freeJoints"), "joints"), checkbox(t("panels.freeActuators"), "actuators"),
     ]),
     h(NumberField, {
-      label: t("panels.timeLimit"), name: t("panels.timeLimit"), unit: "s", value: wishes.seconds, least: LEAST, most: MOST,
-      step: 10, digits: 0, commit: (value) => { wishes.seconds = value; },
+      label: t("panels.timeLimit"), name: t("panels.timeLimit"), unit: "s", value: wishes.seconds,
+      least: LEAST, most: MOST, step: 10, digits: 0, commit: (value) => { wishes.seconds = value; },
     }),
     button(t(again ? "panels.searchAgain" : "panels.searchStart"), () => startSearch(wishes), {
-      kind: again ? "" : "primary", disabled: nothing || !state.answer || stale.value || state.document.goals.length === 0,
+      kind: again ? "" : "primary",
+      disabled: nothing || !state.answer || stale.value || state.document.goals.length === 0,
     }),
     nothing && h("p", { class: "note", role: "status" }, t("panels.nothingFree")),
   ]);
@@ -49,14 +48,16 @@ function form(again) {
 
 function running({ state: now, steps, until, passed, lost }) {
   const last = steps.at(-1);
-  const words = { queued: "searchQueued", stopping: "searchStopping" }[now] ?? (last ? "searchRunning" : "searchReady");
+  const words = { queued: "searchQueued", stopping: "searchStopping" }[now]
+    ?? (last ? "searchRunning" : "searchReady");
   return h("div", { class: "search-running" }, [
     last && h("p", { class: "measure-value numbers" }, mm(last.error_mm)),
     last && h("p", { class: "measure-name" }, t("panels.best")),
     last && curve(steps),
     h("div", {
       class: ["progress", { waiting: !last }], role: "progressbar", "aria-label": t("panels.search"),
-      "aria-valuemin": 0, "aria-valuemax": until, "aria-valuenow": last ? Math.min(until, Math.round(passed)) : undefined,
+      "aria-valuemin": 0, "aria-valuemax": until,
+      "aria-valuenow": last ? Math.min(until, Math.round(passed)) : undefined,
     }, [h("span", { style: { width: `${Math.min(100, (100 * passed) / until)}%` } })]),
     last && h("p", { class: "search-facts numbers" }, [
       h("span", `${number(last.designs)} ${t("panels.designsTried")}`),
@@ -64,99 +65,11 @@ function running({ state: now, steps, until, passed, lost }) {
     ]),
     h("p", { class: "note" }, t(`panels.${words}`)),
     lost && note("warning", t("panels.lost")),
-    button(t(last ? "panels.searchStop" : "panels.searchCancel"), stopSearch, { disabled: now === "stopping" }),
+    button(t(last ? "panels.searchStop" : "panels.searchCancel"), stopSearch, {
+      disabled: now === "stopping",
+    }),
   ]);
 }
-
-function takeStage(stage) {
-  const { search } = state;
-  const label = t("panels.didSearch", { mm: mm(stage.error) });
-  edit((document) => withDesign(document, search.document, stage.grid), { label });
-  if (stage.result)
-    state.answer = { document: state.document, result: stage.result, milliseconds: state.answer?.milliseconds };
-  select({});
-  discardSearch();
-  notify(t("panels.tookSearch"), { label: t("panels.undo"), run: undo });
-}
-
-/** The card of what a search found, and the slider of its steps. */
-const Found = {
-  setup() {
-    const at = ref(state.search.stages.length); // 1 to the number of stages
-    const inside = ref(false); // whether pointer or focus is on the card
-    const stageOf = (n) => state.search.stages[n - 1];
-    const show = () => {
-      const all = state.search.stages.length;
-      const label = at.value === all ? t("panels.bestLabel") : t("panels.stepLabel", { n: at.value, all });
-      showStage(stageOf(at.value), label);
-    };
-    watch([at, inside], () => (inside.value ? show() : hideStage()));
-    onBeforeUnmount(hideStage);
-    const enter = () => { inside.value = true; };
-    const leave = (event) => {
-      const box = event.currentTarget;
-      const focused = box.contains(event.type === "focusout" ? event.relatedTarget : globalThis.document.activeElement);
-      const over = event.type === "focusout" && box.matches(":hover");
-      inside.value = focused || over;
-    };
-    const steps = () => {
-      const all = state.search.stages.length;
-      const to = (n) => { at.value = Math.min(all, Math.max(1, n)); };
-      const value = t("panels.stepValue", { n: at.value, all, mm: mm(stageOf(at.value).error) });
-      return h("div", { class: "steps" }, [
-        h("div", { class: "steps-row" }, [
-          iconButton("chevron", t("panels.stepBack"), () => to(at.value - 1),
-            { class: "icon-button small turn-left", disabled: at.value === 1 }),
-          h("input", {
-            type: "range", min: 1, max: all, step: 1, value: at.value,
-            "aria-label": t("panels.steps"), "aria-valuetext": value,
-            onInput: (event) => to(Number(event.target.value)),
-          }),
-          iconButton("chevron", t("panels.stepOn"), () => to(at.value + 1),
-            { class: "icon-button small turn-right", disabled: at.value === all }),
-        ]),
-        h("p", { class: "note numbers" }, value),
-      ]);
-    };
-    return () => {
-      const { best, steps: history, stages } = state.search;
-      const all = stages.length;
-      const last = at.value === all;
-      const better = best.error_mm < best.start_mm;
-      return h("div", {
-        class: "found", role: "group", "aria-label": t("panels.resultTitle"),
-        onPointerenter: enter, onPointerleave: leave, onFocusin: enter, onFocusout: leave,
-      }, [
-        h("div", { class: "found-measures" }, [
-          h("div", [
-            h("p", { class: "measure-value numbers" }, best.error_fea_mm === null ? "–" : mm(best.error_fea_mm)),
-            h("p", { class: "measure-name" }, best.error_fea_mm === null
-              ? `${t("panels.byFea")}: ${t("panels.notChecked")}` : t("panels.byFea")),
-          ]),
-          h("div", [
-            h("p", { class: "measure-value numbers" }, mm(best.error_mm)),
-            h("p", { class: "measure-name" }, t("panels.byModel")),
-          ]),
-        ]),
-        curve(history, last ? null : stageOf(at.value).designs),
-        all > 1 && steps(),
-        facts([
-          [t("panels.before"), mm(best.start_mm)],
-          best.apart_mm !== null && [t("panels.apart"), mm(best.apart_mm)],
-          [t("panels.designs"), `${number(best.designs)}, ${seconds(best.seconds)}`],
-        ]),
-        !better && note("info", t("panels.notBetter")),
-        best.agrees === false && note("warning", t("panels.beyondBound", { mm: mm(best.bound_mm) })),
-        best.why_no_fea && note("warning", t("panels.whyNoFea", { why: sentence(best.why_no_fea) })),
-        ...warnings(best.warnings),
-        h("div", { class: "row" }, [
-          button(t(last ? "panels.take" : "panels.takeStep"), () => takeStage(stageOf(at.value)), { kind: "primary" }),
-          button(t("panels.discard"), discardSearch),
-        ]),
-      ]);
-    };
-  },
-};
 
 export const SearchPanel = {
   setup() {
@@ -174,6 +87,7 @@ export const SearchPanel = {
         changed && ["queued", "running", "stopping", "done"].includes(search.state)
           && note("warning", t("panels.searchEarlier")),
         searching() && running(search),
+        search?.state === "done" && search.problem && note("warning", reasonOf(search.problem)),
         search?.state === "done" && h(Found, { key: search.key }),
         search?.state === "failed" && problemNote(t("panels.searchFailed"), search.problem),
         search?.state === "cancelled" && note("info", t("panels.searchEnded")),

@@ -4,26 +4,28 @@ import { h, onBeforeUnmount, watch } from "/libraries/vue.js";
 import { withDesign } from "../service/designs.js";
 import { mm } from "../service/format.js";
 import { endPreview, showPreview } from "../service/preview.js";
-import { askSuggestions, dropSuggestions, freshSuggestions } from "../service/suggestions.js";
-import { edit, notify, state, undo } from "../store.js";
+import {
+  askSuggestions, drawSuggestions, dropSuggestions, freshSuggestions,
+} from "../service/suggestions.js";
+import { takeDesign } from "../service/taking.js";
+import { notify, state, undo, view } from "../store.js";
 import { t } from "../text/text.js";
 import { rove } from "./controls.js";
 import { icon } from "./icons.js";
 import { note, problemNote } from "./notes.js";
 import { changeWords, gainWords } from "./vertices.js";
 
+const NEAR = 0.1; // mm, about the model's own error: a design that comes so near is there
 const PICTURE = { width: 88, height: 56 }; // pixels
 
 function take(card) {
   const words = changeWords(card.changes);
   endPreview(card.grid);
-  edit((document) => withDesign(document, document, card.grid), { label: t("panels.didSuggestion", { words }) });
-  // Its shape is known already: the scene need not wait for it.
-  state.answer = { document: state.document, result: card.result, milliseconds: state.answer.milliseconds };
+  takeDesign(state.document, card, t("panels.didSuggestion", { words }));
   notify(t("panels.tookSuggestion", { words }), { label: t("panels.undo"), run: undo });
 }
 
-function card(one, error, fresh) {
+function card(one, k, error, fresh) {
   const words = changeWords(one.changes);
   const gain = error - one.error;
   const show = () => {
@@ -33,7 +35,7 @@ function card(one, error, fresh) {
     });
   };
   const hide = () => endPreview(one.grid);
-  return h("li", { key: words }, [
+  return h("li", { key: k }, [ // by its place, so that the focus stays where it is
     h("button", {
       type: "button", class: "suggestion", "aria-disabled": fresh ? undefined : "true",
       "aria-label": t("panels.cardName", { words, mm: mm(one.error), gain: gainWords(gain) }),
@@ -58,6 +60,7 @@ export const Suggestions = {
   setup() {
     watch([() => state.document.grid, () => state.document.goals, () => state.answer], askSuggestions,
       { immediate: true });
+    watch(() => view.theme, drawSuggestions, { flush: "post" });
     onBeforeUnmount(() => {
       dropSuggestions();
       for (const { grid } of state.suggestions?.cards ?? []) endPreview(grid);
@@ -68,16 +71,17 @@ export const Suggestions = {
     const content = () => {
       const { suggestions } = state;
       if (!suggestions) return h("p", { class: "note", role: "status" }, t("panels.suggesting"));
-      if (suggestions.state === "failed") return problemNote(t("panels.suggestionsFailed"), suggestions.problem);
-      const { cards, error } = suggestions;
-      if (cards.length === 0) return note("info", t("panels.suggestionsNone"));
+      const { cards, error, problem } = suggestions;
+      if (problem) return problemNote(t("panels.suggestionsFailed"), problem);
       const fresh = freshSuggestions();
+      if (error < NEAR && fresh) return h("p", { class: "note" }, t("panels.arrived"));
+      if (cards.length === 0) return note("info", t("panels.suggestionsNone"));
       return [
         !fresh ? h("p", { class: "note" }, t("panels.suggestionsOld"))
           : cards[0].error >= error ? h("p", { class: "note" }, t("panels.suggestionsWorse"))
             : h("p", { class: "note" }, t("panels.suggestionsNote")),
         h("ol", { class: ["suggestions", { old: !fresh }], "aria-label": t("panels.suggestions"), onKeydown },
-          cards.map((one) => card(one, error, fresh))),
+          cards.map((one, k) => card(one, k, error, fresh))),
       ];
     };
     return () => h("section", { class: "part-section", "aria-label": t("panels.suggestions") }, [

@@ -19,12 +19,16 @@ export function vertexWords([part, number, ...rest]) {
   return t(corner === "centre" ? "panels.beamCentre" : "panels.beamCorner", values);
 }
 
+function moveWords({ k, by: [dx, dy] }) {
+  const eighth = (Math.round(Math.atan2(dy, dx) / (Math.PI / 4)) + 8) % 8;
+  const length = formatNumber(Math.hypot(dx, dy), view.language, 1);
+  return t("panels.moveJoint", { k, arrow: ARROWS[eighth], mm: `${length} mm` });
+}
+
 /** Return the changes of a design in words: "Actuator 3: 0 % → +25 %". */
 export function changeWords({ joints, actuators }) {
   const words = [
-    ...joints.map(({ k, by: [dx, dy] }) => t("panels.moveJoint", {
-      k, arrow: ARROWS[(Math.round(Math.atan2(dy, dx) / (Math.PI / 4)) + 8) % 8], mm: `${formatNumber(Math.hypot(dx, dy), view.language, 1)} mm`,
-    })),
+    ...joints.map(moveWords),
     ...actuators.map(({ b, from, to }) => t("panels.changeRatio", { b, from: ratio(from), to: ratio(to) })),
   ];
   if (words.length < 2) return words[0] ?? t("panels.same");

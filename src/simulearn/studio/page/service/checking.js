@@ -17,7 +17,9 @@ export async function startCheck() {
   const { document, answer } = state;
   const reference = answer?.document.grid === document.grid ? answer.result : null;
   const key = {}; // of this check: answers to an earlier one are left unread
-  state.fea = { key, document, reference, result: null, state: "queued", lost: false, progress: null, seconds: 0 };
+  state.fea = {
+    key, document, reference, result: null, state: "queued", lost: false, progress: null, seconds: 0,
+  };
   const update = (more) => {
     if (state.fea?.key === key) state.fea = { ...state.fea, ...more };
   };

@@ -49,8 +49,9 @@ async function follow(begin, report, wish, wait) {
       if (complete) await wait(answer.seconds < SECONDS ? SOON : LATER);
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
-      if (problem.status === 404) throw new Problem({ status: 404, code: "job-lost", detail: problem.message });
-      if (!problem.offline && problem.status < 500 && problem.status !== 429) throw problem;
+      const { status, message: detail } = problem;
+      if (status === 404) throw new Problem({ status, code: "job-lost", detail });
+      if (!problem.offline && status < 500 && status !== 429) throw problem;
       report({ ...last, id, steps, lost: true });
       await wait(AGAIN[Math.min(failures, AGAIN.length - 1)]);
       failures += 1;

@@ -10,6 +10,7 @@ import { latest } from "./latest.js";
 const QUIET = 300; // ms without a change until a toolpath is asked for
 const AGAIN = 3000; // ms until a server that was busy or away is asked again
 
+const NOTHING = { document: null, toolpath: null, facts: null };
 const questions = latest(QUIET);
 const retries = latest(AGAIN);
 
@@ -25,7 +26,7 @@ export function askPrint() {
   const { document } = state;
   const { grid, printer } = document;
   const update = (more) => {
-    state.print = { document: null, toolpath: null, facts: null, layer: 1, travels: false, ...state.print, ...more };
+    state.print = { ...NOTHING, layer: 1, travels: false, ...state.print, ...more };
   };
   if (grid.beams.length === 0) {
     questions.drop();
@@ -37,7 +38,7 @@ export function askPrint() {
   questions.ask((signal) => toolpath([grid], printer, signal), (answer, problem) => {
     if (problem) {
       // Its toolpath would be that of another design, or of another bed.
-      update({ of: { grid, printer }, state: "failed", problem, document: null, toolpath: null, facts: null });
+      update({ ...NOTHING, of: { grid, printer }, state: "failed", problem });
       if (problem.offline || problem.status === 429 || problem.status >= 500) {
         update({ of: null });
         retries.ask(async () => null, askPrint);
@@ -46,8 +47,10 @@ export function askPrint() {
     }
     const before = state.print;
     const count = answer.layers.length;
-    const kept = before.toolpath?.layers.length === count ? before.layer : count;
-    update({ of: { grid, printer }, document, toolpath: answer, facts: answer.print, layer: kept, state: "ready" });
+    const layer = before.toolpath?.layers.length === count ? before.layer : count;
+    update({
+      of: { grid, printer }, document, toolpath: answer, facts: answer.print, layer, state: "ready",
+    });
   });
 }
 

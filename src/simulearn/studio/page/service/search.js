@@ -4,7 +4,8 @@
 //   state: "queued", "running", "stopping", "done", "failed", lost: whether the server is silent,
 //   passed: seconds since it began, 0 while it gets ready,
 //   steps: {iteration, phase, seconds, designs, error_mm, grid} so far,
-//   best: {grid, error_mm, error_fea_mm, ...} once it is done, problem: why it failed.
+//   best: {grid, error_mm, error_fea_mm, ...} and stages on the way there once it is done,
+//   problem: why it failed or ended early.
 
 import { taskOf } from "../document/task.js";
 import { state } from "../store.js";
@@ -12,7 +13,7 @@ import { Problem, jobFrames, simulate, startOptimize } from "./api.js";
 import { placedLike, withDesign } from "./designs.js";
 import { runJob } from "./jobs.js";
 import { latest } from "./latest.js";
-import { stagesOf } from "./steps.js";
+import { bestOf, stagesOf } from "./steps.js";
 import { endPreview, showPreview } from "./preview.js";
 
 const SHAPES = latest(0);
@@ -47,7 +48,11 @@ export async function startSearch({ joints, actuators, seconds }) {
     update({ state: "done", best, shape, stages: stagesOf(document.grid, answer.steps, best, shape) });
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
-    update({ state: "failed", problem });
+    const steps = state.search?.key === key ? state.search.steps : [];
+    if (steps.length < 2) return update({ state: "failed", problem });
+    // What it had found by then is known here.
+    const best = bestOf(document.grid, steps);
+    update({ state: "done", problem, best, stages: stagesOf(document.grid, steps, best, null) });
   }
   return null;
 }

@@ -5,11 +5,12 @@ import { placedLike } from "./designs.js";
 const MOST_POINTS = 300; // of the curve; more cannot be told apart
 const MOST_STAGES = 60; // of more designs, every second or third is left out
 
-/** Return the least of 1, 2, 5, 10 times a power of ten that is at least `most`. */
+/** Return the least of 1, 2, 3, 4, 6, 8, 10 times a power of ten that is at least `most`. */
 export function roundUp(most) {
   if (!(most > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(most));
-  return [1, 2, 5, 10].map((n) => n * power).find((value) => value >= most * (1 - 1e-9));
+  const values = [1, 2, 3, 4, 6, 8, 10].map((n) => Number((n * power).toPrecision(2)));
+  return values.find((value) => value >= most * (1 - 1e-9));
 }
 
 /** Return the line of the best error so far, as steps: {points: [[designs, mm], ...], corrections}.
@@ -46,6 +47,16 @@ export function stagesOf(grid, steps, best, shape) {
   const last = { grid: best.grid, error: best.error_mm, designs: best.designs, result: shape };
   while (stages.length && !differs(stages.at(-1).grid, best.grid)) stages.pop();
   return [...stages, last];
+}
+
+/** Return the result of a search that ended without one: the design of its last step, not checked. */
+export function bestOf(grid, steps) {
+  const last = steps.at(-1);
+  return {
+    grid: placedLike(grid, last.grid), start_mm: steps[0].error_mm, error_mm: last.error_mm,
+    error_fea_mm: null, apart_mm: null, agrees: null, designs: last.designs, seconds: last.seconds,
+    warnings: [],
+  };
 }
 
 function differs(a, b) {

@@ -39,7 +39,7 @@ export function askSuggestions() {
   questions.ask((signal) => suggest(document, signal), (ready, problem) => {
     if (ready) {
       state.suggestions = ready;
-      draw(ready);
+      drawSuggestions();
       return;
     }
     state.suggestions = { document, state: "failed", problem, cards: [] };
@@ -67,10 +67,12 @@ async function suggest(document, signal) {
 }
 
 /** Draw the pictures, one after the other; those of suggestions that are gone are left out. */
-async function draw(suggestions) {
-  for (const card of suggestions.cards) {
-    if (state.suggestions?.cards !== suggestions.cards) return;
-    card.picture = await thumbnail(card.result, PICTURE);
-    if (state.suggestions?.cards === suggestions.cards) state.suggestions = { ...state.suggestions };
+export async function drawSuggestions() {
+  const { cards } = state.suggestions ?? { cards: [] };
+  for (const card of cards) {
+    const picture = await thumbnail(card.result, PICTURE);
+    if (state.suggestions?.cards !== cards) return;
+    card.picture = picture;
+    state.suggestions = { ...state.suggestions };
   }
 }

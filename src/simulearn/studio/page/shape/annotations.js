@@ -8,13 +8,15 @@ const MARKERS = { // centred on the place, px
   ring: ["circle", { r: 7 }],
   target: ["path", { d: "M0-8 8 0 0 8-8 0zM0-2.5v5M-2.5 0h5" }],
 };
+const APART = 34; // px between the ends of a dimension that is shown
 const REACH = 15; // px around a marker in which it is hit
 
 /** Create the layer in a container.
  *
  * Items of `set`: { id, kind: "line", a, b } | { kind: "text", at, text, shift: [dx, dy] } |
  * { kind: "dot" | "ring" | "target", at, name?, onPress?, onHover?, onKey? } |
- * { kind: "polygon", points } with `className`; places are [x, y, z] in mm.
+ * { kind: "polygon", points } with `className`; places are [x, y, z] in mm. An item with span: [a, b]
+ * is shown only while these two places are seen apart.
  */
 export function createAnnotations(container) {
   const svg = globalThis.document.createElementNS(SPACE, "svg");
@@ -49,7 +51,8 @@ export function createAnnotations(container) {
   const update = (entry, item) => {
     const { element } = entry;
     entry.item = item;
-    element.setAttribute("class", `note note-${item.kind} ${item.className ?? ""}${item.onPress ? " operable" : ""}`);
+    const classes = ["note", `note-${item.kind}`, item.className ?? "", item.onPress ? "operable" : ""];
+    element.setAttribute("class", classes.join(" "));
     if (item.kind === "text") element.firstChild.textContent = item.text;
     if (item.onPress) {
       element.setAttribute("tabindex", item.tabindex ?? 0);
@@ -79,14 +82,17 @@ export function createAnnotations(container) {
     draw(project) {
       for (const { item, element } of shown.values()) {
         const places = (item.points ?? (item.kind === "line" ? [item.a, item.b] : [item.at])).map(project);
-        const seen = places.every((place) => place.seen);
+        const wide = !item.span || apart(...item.span.map(project)) > APART;
+        const seen = wide && places.every((place) => place.seen);
         element.style.display = seen ? "" : "none";
         if (!seen) continue;
         const [p, q] = places;
         if (item.kind === "line")
           for (const line of element.children) set(line, { x1: p.x, y1: p.y, x2: q.x, y2: q.y });
         else if (item.kind === "polygon")
-          set(element.firstChild, { points: places.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" ") });
+          set(element.firstChild, {
+            points: places.map(({ x, y }) => `${x.toFixed(1)},${y.toFixed(1)}`).join(" "),
+          });
         else {
           const [dx, dy] = item.shift ?? [0, 0];
           element.setAttribute("transform", `translate(${(p.x + dx).toFixed(1)} ${(p.y + dy).toFixed(1)})`);
@@ -96,6 +102,8 @@ export function createAnnotations(container) {
     dispose: () => svg.remove(),
   };
 }
+
+const apart = (p, q) => Math.hypot(p.x - q.x, p.y - q.y);
 
 function create(name, attributes) {
   const element = globalThis.document.createElementNS(SPACE, name);

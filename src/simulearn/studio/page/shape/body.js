@@ -2,7 +2,7 @@
 
 import { THREE } from "/libraries/three.js";
 import { COLOURINGS, calmRange } from "./colours.js";
-import { paintWith, plain, surfaceMaterial, useMap } from "./material.js";
+import { outlineMaterial, paintWith, plain, surfaceMaterial, useMap } from "./material.js";
 import { createSkin, placeSkin } from "./skin.js";
 import { fillValues, hasValues, rangeOf } from "./values.js";
 
@@ -10,17 +10,21 @@ const MARKS = { plain: 0, hover: 120, selected: 255 };
 
 /** Create the drawing of a result.
  *
- * opacity below 1 is for results that lie over another; one: the theme's colour that all of it has.
+ * opacity below 1 is for results that lie over another, 0 for edges alone, which are then seen through
+ * all else; one: the theme's colour that all of it has;
+ * spacing: of the stations along a beam, mm.
  */
-export function createBody({ opacity = 1, edges = 0.3, one = null } = {}) {
+export function createBody({ opacity = 1, edges = 0.3, one = null, spacing } = {}) {
   const material = surfaceMaterial({ opacity });
   const lineMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: edges, depthWrite: false });
+  lineMaterial.depthTest = opacity > 0;
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), material);
   const lines = new THREE.LineSegments(new THREE.BufferGeometry(), lineMaterial);
+  const outline = new THREE.Mesh(mesh.geometry, outlineMaterial());
   const group = new THREE.Group();
-  group.add(mesh, lines);
-  mesh.frustumCulled = false;
-  lines.frustumCulled = false;
+  group.add(mesh, lines, outline);
+  mesh.visible = opacity > 0;
+  for (const object of group.children) object.frustumCulled = false;
   group.visible = false;
   let [skin, shown, frame, by, reference, range] = [null, null, 11, "actuator", null, [0, 1]];
 
@@ -41,6 +45,7 @@ export function createBody({ opacity = 1, edges = 0.3, one = null } = {}) {
     mesh.geometry.setIndex(changing(index, 1));
     lines.geometry.setAttribute("position", place); // the same numbers, on the device too
     lines.geometry.setIndex(changing(pairs, 1));
+    outline.geometry = mesh.geometry;
   };
   const upload = (names) => {
     for (const name of names) mesh.geometry.attributes[name].needsUpdate = true;
@@ -78,7 +83,7 @@ export function createBody({ opacity = 1, edges = 0.3, one = null } = {}) {
       }
       const before = skin?.storage;
       shown = { result, grid };
-      skin = createSkin(result, grid, { storage: before });
+      skin = createSkin(result, grid, { storage: before, spacing });
       if (skin.storage !== before) attach();
       else {
         upload(["tone"]);
@@ -89,6 +94,7 @@ export function createBody({ opacity = 1, edges = 0.3, one = null } = {}) {
       lines.geometry.setDrawRange(0, skin.lineCount);
       skin.storage.marks.fill(0);
       upload(["mark"]);
+      outline.visible = false;
       colour();
       place();
     },
@@ -107,26 +113,35 @@ export function createBody({ opacity = 1, edges = 0.3, one = null } = {}) {
     /** Mark parts, by their numbers in the document. */
     setMarks({ joints = [], beams = [], hover = null }) {
       if (!shown) return;
+      outline.visible = false;
       for (const { kind, number, firstVertex, vertexCount } of skin.parts) {
         const selected = (kind === "joint" ? joints : beams).includes(number);
         const mark = selected ? MARKS.selected : hover?.[kind] === number ? MARKS.hover : MARKS.plain;
+        outline.visible ||= mark > 0;
         skin.storage.marks.fill(mark, firstVertex, firstVertex + vertexCount);
       }
       upload(["mark"]);
     },
+    /** Draw what is dear, the edges, or not. */
+    setPlain(on) { lines.visible = !on; },
+    setSize(width, height) { outline.material.uniforms.size.value.set(width, height); },
     setDim(dim) {
       material.uniforms.dim.value = dim;
       lineMaterial.opacity = edges * (1 - 0.6 * dim);
     },
     setTheme(theme) {
-      const same = one && Object.fromEntries(["beam", "joint", "top", "bottom"].map((name) => [name, theme[one]]));
+      const names = ["beam", "joint", "top", "bottom"];
+      const same = one && Object.fromEntries(names.map((name) => [name, theme[one]]));
       paintWith(material, { ...theme, ...same });
+      outline.material.uniforms.accent.value.fromArray(theme.accent);
       lineMaterial.color = plain(theme[one ?? "text"]);
     },
     dispose() {
       mesh.geometry.dispose();
       lines.geometry.dispose();
+      material.uniforms.map.value.dispose();
       material.dispose();
+      outline.material.dispose();
       lineMaterial.dispose();
     },
   };

@@ -4,7 +4,7 @@
 import { OrbitControls, THREE } from "/libraries/three.js";
 
 const ANGLE = 30; // degrees, of the perspective's height
-const MARGIN = 1.16; // of the fitted view around the shape
+const LEAST = 20; // mm from the target
 const TURN = 260; // ms of the way to a named view
 const NEVER_FLAT = 1e-4; // rad from the pole, where the azimuth would be lost
 
@@ -16,7 +16,7 @@ export const VIEWS = {
   top: [0, NEVER_FLAT],
 };
 
-/** Create the camera of a canvas. onChange is called whenever it moved. */
+/** Create the camera of a canvas (null for none, to be placed only). onChange is called whenever it moved. */
 export function createCamera(element, { onChange, still = () => false }) {
   const perspective = new THREE.PerspectiveCamera(ANGLE, 1, 1, 5000);
   const parallel = new THREE.OrthographicCamera(-1, 1, 1, -1, -5000, 5000);
@@ -122,32 +122,42 @@ export function createCamera(element, { onChange, still = () => false }) {
       go({ ...(motion?.to ?? state()), azimuth, polar }, animate);
     },
     /** Bring points (a list of [x, y, z]) into view; from a named view where one is given. */
-    fit(points, { view = null, animate = true } = {}) {
+    fit(points, { view = null, animate = true, margin = 1.2 } = {}) {
       if (points.length === 0) return;
       const now = motion?.to ?? state();
       const [azimuth, polar] = view ? VIEWS[view] ?? view : [now.azimuth, now.polar];
-      const target = new THREE.Box3().setFromPoints(points.map((p) => new THREE.Vector3(...p)))
-        .getCenter(new THREE.Vector3());
-      const back = new THREE.Vector3(
+      const back = [
         Math.sin(azimuth) * Math.sin(polar), -Math.cos(azimuth) * Math.sin(polar), Math.cos(polar),
-      );
-      const right = new THREE.Vector3(Math.cos(azimuth), Math.sin(azimuth), 0);
-      const up = back.clone().cross(right);
+      ];
+      const right = [Math.cos(azimuth), Math.sin(azimuth), 0];
+      const up = [
+        -Math.sin(azimuth) * Math.cos(polar), Math.cos(azimuth) * Math.cos(polar), Math.sin(polar),
+      ];
+      const axes = [right, up, back];
+      const seen = points.map((p) => axes.map((axis) => axis[0] * p[0] + axis[1] * p[1] + axis[2] * p[2]));
+      const middle = [0, 1, 2].map((k) => {
+        let [low, high] = [Infinity, -Infinity];
+        for (const p of seen) [low, high] = [Math.min(low, p[k]), Math.max(high, p[k])];
+        return (low + high) / 2;
+      });
       const aspect = size.width / size.height;
       const depth = camera() === parallel ? 0 : 1;
-      let distance = 20;
-      for (const point of points) {
-        const p = new THREE.Vector3(...point).sub(target);
-        const across = Math.max(Math.abs(p.dot(right)) / aspect, Math.abs(p.dot(up)));
-        distance = Math.max(distance, (MARGIN * across) / slope + depth * p.dot(back));
+      let distance = LEAST;
+      for (const p of seen) {
+        const across = Math.max(Math.abs(p[0] - middle[0]) / aspect, Math.abs(p[1] - middle[1]));
+        distance = Math.max(distance, (margin * across) / slope + depth * (p[2] - middle[2]));
       }
+      const target = new THREE.Vector3(
+        ...[0, 1, 2].map((k) => middle[0] * right[k] + middle[1] * up[k] + middle[2] * back[k]),
+      );
       go({ azimuth, polar, distance, target }, animate);
       touched = false;
     },
     orbit(azimuth, polar) {
       touched = true;
       const now = motion?.to ?? state();
-      go({ ...now, azimuth: now.azimuth + azimuth, polar: Math.min(Math.PI, Math.max(0, now.polar + polar)) }, false);
+      const tilt = Math.min(Math.PI, Math.max(0, now.polar + polar));
+      go({ ...now, azimuth: now.azimuth + azimuth, polar: tilt }, false);
     },
     zoom(factor) {
       touched = true;
@@ -178,7 +188,7 @@ export function createCamera(element, { onChange, still = () => false }) {
     set: (to) => go({ ...to, target: to.target.clone() }, false),
     dispose() {
       cancelAnimationFrame(turning);
-      controls.dispose();
+      if (element) controls.dispose();
     },
   };
 }

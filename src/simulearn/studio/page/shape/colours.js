@@ -4,9 +4,18 @@
 /** Nine colours each, from low to high; between them colours are mixed. Viridis and cividis are those
  * of matplotlib (CC0); "diverging" runs from blue over grey to orange. */
 export const MAPS = {
-  viridis: ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"],
-  cividis: ["#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#fee838"],
-  diverging: ["#0b4f94", "#3a7dbb", "#79a9d4", "#b5cde2", "#dcdcdc", "#eac7a7", "#e29a5c", "#c96a1d", "#964500"],
+  viridis: [
+    "#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c",
+    "#28ae80", "#5ec962", "#addc30", "#fde725",
+  ],
+  cividis: [
+    "#00224e", "#123570", "#3b496c", "#575d6d", "#707173",
+    "#8a8678", "#a59c74", "#c3b369", "#fee838",
+  ],
+  diverging: [
+    "#0b4f94", "#3a7dbb", "#79a9d4", "#b5cde2", "#dcdcdc",
+    "#eac7a7", "#e29a5c", "#c96a1d", "#964500",
+  ],
 };
 
 /** What shapes can be coloured by: the map and unit of each, `null` being the colours of the parts. */

@@ -22,11 +22,15 @@ export function dimensionItems({ low, high }, text) {
 function dimension(id, a, b, tick, text) {
   const shifted = (point, sign) => point.map((x, axis) => x + sign * tick[axis]);
   const end = (name, p) => ({
-    id: `${id}-${name}`, kind: "line", className: "note-dimension", a: shifted(p, 1), b: shifted(p, -1),
+    id: `${id}-${name}`, kind: "line", className: "note-dimension", span: [a, b],
+    a: shifted(p, 1), b: shifted(p, -1),
   });
   return [
-    { id: `${id}-line`, kind: "line", className: "note-dimension", a, b },
+    { id: `${id}-line`, kind: "line", className: "note-dimension", a, b, span: [a, b] },
     end("from", a), end("to", b),
-    { id: `${id}-text`, kind: "text", className: "note-dimension", at: a.map((x, k) => (x + b[k]) / 2), text },
+    {
+      id: `${id}-text`, kind: "text", className: "note-dimension", text, span: [a, b],
+      at: a.map((x, k) => (x + b[k]) / 2),
+    },
   ];
 }

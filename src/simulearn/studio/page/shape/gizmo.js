@@ -12,31 +12,35 @@ const NAMES = ["x", "y", "z"];
 export function gizmoItems(point, size, project, { onPress, name, active = null }) {
   const along = (axis, t) => point.map((x, k) => x + t * size * AXES[axis][k]);
   const origin = project(point);
-  const items = [];
+  const planes = [];
   for (let normal = 0; normal < 3; normal += 1) {
     const [a, b] = [(normal + 1) % 3, (normal + 2) % 3];
     const corner = (s, t) => point.map((x, k) => x + size * (s * AXES[a][k] + t * AXES[b][k]));
     const points = [corner(NEAR, NEAR), corner(FAR, NEAR), corner(FAR, FAR), corner(NEAR, FAR)];
     if (area(points.map(project)) < 30) continue; // px2: seen edge-on
     const id = `plane-${NAMES[normal]}`;
-    items.push({
+    planes.push({
       id, kind: "polygon", points, className: `note-handle ${NAMES[normal]} ${active === id ? "active" : ""}`,
-      name: name(NAMES[a] + NAMES[b]), tabindex: -1, onPress: (event) => onPress(event, { id, normal: AXES[normal] }),
+      name: name(NAMES[a] + NAMES[b]), tabindex: -1,
+      onPress: (event) => onPress(event, { id, normal: AXES[normal] }),
     });
   }
+  const items = [];
   for (let axis = 0; axis < 3; axis += 1) {
     const end = project(along(axis, 1));
     if (Math.hypot(end.x - origin.x, end.y - origin.y) < FLAT * LENGTH) continue;
     const id = `axis-${NAMES[axis]}`;
     const className = `note-handle ${NAMES[axis]} ${active === id ? "active" : ""}`;
-    const press = { name: name(NAMES[axis]), tabindex: -1, onPress: (event) => onPress(event, { id, axis: AXES[axis] }) };
+    const press = {
+      name: name(NAMES[axis]), tabindex: -1, onPress: (event) => onPress(event, { id, axis: AXES[axis] }),
+    };
     items.push(
       { id, kind: "line", a: along(axis, 0.12), b: along(axis, 1), className, ...press },
       { id: `${id}-tip`, kind: "dot", at: along(axis, 1), className, ...press },
       { id: `${id}-name`, kind: "text", at: along(axis, 1.2), text: NAMES[axis], className },
     );
   }
-  return items;
+  return [...items, ...planes]; // the planes over the axes that cross them
 }
 
 /** Return where a drag has moved a point to: `ray` now and at its begin are { origin, direction }. */

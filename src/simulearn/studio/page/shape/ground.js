@@ -5,6 +5,8 @@ import { plain } from "./material.js";
 
 const CELL = 10; // mm between the grid's lines
 const STRONG = 5; // every fifth line is stronger
+const MANY = 60; // lines across, from which on only the strong ones are drawn
+const PIECES = 12; // of a line, along which it fades
 const BEYOND = 0.35; // of the sheet's size that the grid goes on around it
 const BELOW = 0.15; // mm under the sheet, so that they do not flicker through one another
 const SHADOW = { light: 0.1, dark: 0.3 };
@@ -20,23 +22,26 @@ void main() {
 }`;
 
 const SHADOW_FRAGMENT = `
-uniform float strength;
+uniform vec3 shade;
 varying float vOver;
 void main() {
   if (vOver < 0.0) discard;
-  gl_FragColor = vec4(0.0, 0.0, 0.0, strength);
+  gl_FragColor = vec4(shade, 1.0);
 }`;
 
 /** Create the ground of a scene. */
 export function createGround() {
   const group = new THREE.Group();
-  const lineMaterial = new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false });
+  const lineMaterial = new THREE.LineBasicMaterial({
+    vertexColors: true, transparent: true, depthWrite: false,
+  });
   const lines = new THREE.LineSegments(new THREE.BufferGeometry(), lineMaterial);
   lines.renderOrder = 1;
-  // Every point of the plane is darkened once: the first fragment keeps the later ones out by depth.
+  // The darker of the shadow and what is there: parts over one another darken the ground once.
   const shadowMaterial = new THREE.ShaderMaterial({
-    vertexShader: SHADOW_VERTEX, fragmentShader: SHADOW_FRAGMENT, transparent: true, depthFunc: THREE.LessDepth,
-    side: THREE.DoubleSide, uniforms: { height: { value: 0 }, strength: { value: SHADOW.light } },
+    vertexShader: SHADOW_VERTEX, fragmentShader: SHADOW_FRAGMENT, transparent: true, depthWrite: false,
+    blending: THREE.CustomBlending, blendEquation: THREE.MinEquation, side: THREE.DoubleSide,
+    uniforms: { height: { value: 0 }, shade: { value: new THREE.Vector3() } },
   });
   const shadow = new THREE.Mesh(new THREE.BufferGeometry(), shadowMaterial);
   shadow.frustumCulled = false;
@@ -50,17 +55,21 @@ export function createGround() {
     const reach = BEYOND * size + CELL;
     const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
     const radius = size / 2 + reach;
-    const from = [0, 1].map((a) => Math.floor((centre[a] - radius) / CELL));
-    const to = [0, 1].map((a) => Math.ceil((centre[a] + radius) / CELL));
-    const add = (x, y, strong) => {
-      const away = Math.hypot(x - centre[0], y - centre[1]) / radius;
-      points.push(x, y, 0);
-      colours.push(...theme.lineStrong, Math.max(0, 1 - away ** 2) * (strong ? 0.62 : 0.28));
-    };
-    for (let i = from[0]; i <= to[0]; i += 1) {
-      for (let j = from[1]; j <= to[1]; j += 1) {
-        if (i < to[0]) for (const k of [i, i + 1]) add(k * CELL, j * CELL, j % STRONG === 0);
-        if (j < to[1]) for (const k of [j, j + 1]) add(i * CELL, k * CELL, i % STRONG === 0);
+    const cell = (2 * radius) / CELL > MANY ? CELL * STRONG : CELL;
+    const strength = ([x, y]) => Math.max(0, 1 - Math.hypot(x - centre[0], y - centre[1]) ** 2 / radius ** 2);
+    for (const axis of [0, 1]) {
+      const from = Math.ceil((centre[axis] - radius) / cell) * cell;
+      for (let x = from; x <= centre[axis] + radius; x += cell) {
+        const strong = Math.round(x / CELL) % STRONG === 0 ? 0.6 : 0.28;
+        for (let k = 0; k < PIECES; k += 1) {
+          const ends = [k, k + 1].map((n) => centre[1 - axis] + radius * ((2 * n) / PIECES - 1))
+            .map((y) => (axis === 0 ? [x, y] : [y, x]));
+          if (ends.every((end) => strength(end) === 0)) continue;
+          for (const end of ends) {
+            points.push(...end, 0);
+            colours.push(...theme.lineStrong, strong * strength(end));
+          }
+        }
       }
     }
     lines.geometry.dispose();
@@ -83,14 +92,15 @@ export function createGround() {
       extent = next;
       build(low, high);
     },
-    follow(mesh) { shadow.geometry = mesh.geometry; },
     setTheme(next) {
       theme = next;
       lineMaterial.color = plain([1, 1, 1]);
-      shadowMaterial.uniforms.strength.value = theme.dark ? SHADOW.dark : SHADOW.light;
+      const light = 1 - (theme.dark ? SHADOW.dark : SHADOW.light);
+      shadowMaterial.uniforms.shade.value.fromArray(theme.canvas.map((x) => x * light));
       if (bounds) build(bounds.low, bounds.high);
     },
-    setVisible(on) { group.visible = on; },
+    /** Draw what is dear, the shadow, or not. */
+    setPlain(on) { shadow.visible = !on; },
     dispose() {
       lines.geometry.dispose();
       lineMaterial.dispose();

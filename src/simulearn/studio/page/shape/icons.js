@@ -13,17 +13,24 @@ const PATHS = {
   top: [TOP, LEFT, RIGHT],
   front: [LEFT, TOP, RIGHT],
   side: [RIGHT, TOP, LEFT],
-  parallel: ["M3.5 6.500h10v10h-10z", "M6.5 6.500v-3h10v10h-3"],
-  perspective: ["M3.5 6h10v10.500h-10z", "M3.5 6l6.5-2.500h6V10l-2.5 6.500M13.5 6L16 3.5"],
-  display: ["M2.5 10c2-3.7 4.5-5.5 7.5-5.500s5.5 1.8 7.5 5.500c-2 3.7-4.5 5.5-7.5 5.500S4.5 13.7 2.5 10z", "M10 7.600a2.4 2.4 0 1 0 0 4.8 2.4 2.4 0 0 0 0-4.800z"],
+  parallel: ["M3.5 6.5h10v10h-10z", "M6.5 6.5v-3h10v10h-3"],
+  perspective: ["M3.5 6h10v10.5h-10z", "M3.5 6l6.5-2.5h6V10l-2.5 6.5M13.5 6L16 3.5"],
+  display: [
+    "M2.5 10c2-3.7 4.5-5.5 7.5-5.5s5.5 1.8 7.5 5.5c-2 3.7-4.5 5.5-7.5 5.5S4.5 13.7 2.5 10z",
+    "M10 7.6a2.4 2.4 0 1 0 0 4.8 2.4 2.4 0 0 0 0-4.8z",
+  ],
   play: ["M6.5 4l9 6-9 6z"],
-  pause: ["M7 4.500v11M13 4.500v11"],
-  loop: ["M15.5 8.500A6 6 0 0 0 4.3 7.600M4.5 11.500a6 6 0 0 0 11.2.9", "M4.3 3.800v3.800h3.800M15.7 16.200v-3.800h-3.8"],
-  check: ["M4 10.500l4 4 8-9"],
+  pause: ["M7 4.5v11M13 4.5v11"],
+  loop: [
+    "M15.5 8.5A6 6 0 0 0 4.3 7.6M4.5 11.5a6 6 0 0 0 11.2.9",
+    "M4.3 3.8v3.8h3.8M15.7 16.2v-3.8h-3.8",
+  ],
 };
 
 /** Return an icon as an <svg> that screen readers pass over. */
 export function icon(name, size = 18) {
-  return h("svg", { class: "shape-icon", viewBox: "0 0 20 20", width: size, height: size, "aria-hidden": "true" },
-    PATHS[name].map((d, k) => h("path", { d, class: { filled: k === 0 && FILLED.includes(name) } })));
+  return h(
+    "svg", { class: "shape-icon", viewBox: "0 0 20 20", width: size, height: size, "aria-hidden": "true" },
+    PATHS[name].map((d, k) => h("path", { d, class: { filled: k === 0 && FILLED.includes(name) } })),
+  );
 }

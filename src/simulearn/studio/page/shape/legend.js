@@ -36,7 +36,9 @@ export const Legend = {
 
 function scale(map, range) {
   return h("div", { class: "shape-scale" }, [
-    h("div", { class: "bar", style: { backgroundImage: `linear-gradient(to right, ${MAPS[map].join(", ")})` } }),
+    h("div", {
+      class: "bar", style: { backgroundImage: `linear-gradient(to right, ${MAPS[map].join(", ")})` },
+    }),
     h("div", { class: "ticks" }, ticks(range).map(({ at, value, digits }) => h("span", {
       key: at, style: { left: `${100 * at}%` },
     }, number(value, digits)))),

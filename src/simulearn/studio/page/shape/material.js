@@ -6,45 +6,69 @@ import { table } from "./colours.js";
 
 const TEXELS = 256;
 
+// The light is that of the vertices: they are shared where the surface is smooth and nowhere else.
 const VERTEX = `
-attribute float tone;
-attribute float value;
-attribute float mark;
-uniform vec3 palette[5];
-varying vec3 vNormal, vView, vTone;
-varying float vValue, vMark, vPart;
+attribute float tone, value, mark;
+uniform vec3 palette[5], accent;
+uniform vec2 range;
+uniform float joints, ambient;
+varying vec4 vColour;
+varying vec3 vValue;
 void main() {
   int k = int(tone + 0.5);
-  vTone = k == 0 ? palette[0] : k == 1 ? palette[1] : k == 2 ? palette[2] : k == 3 ? palette[3] : palette[4];
-  vPart = k == 1 || k == 2 ? 1.0 : 0.0;
-  vValue = value;
-  vMark = mark;
-  vNormal = normal;
-  vec4 place = modelViewMatrix * vec4(position, 1.0);
-  vView = normalMatrix * normal;
-  gl_Position = projectionMatrix * place;
+  vec3 colour = k == 0 ? palette[0] : k == 1 ? palette[1] : k == 2 ? palette[2]
+    : k == 3 ? palette[3] : palette[4];
+  float sky = 0.5 + 0.5 * normal.z;
+  vec3 seen = normalize(normalMatrix * normal);
+  float key = max(0.0, 0.35 + 0.65 * dot(seen, vec3(-0.40, 0.55, 0.73)));
+  vColour = vec4(colour, min(1.04, ambient + 0.18 * sky + 0.38 * key));
+  float share = (value - range.x) / max(range.y - range.x, 1e-9);
+  vValue = vec3(share, k == 1 || k == 2 ? joints : 1.0, mark * 0.22);
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 
 const FRAGMENT = `
 uniform sampler2D map;
-uniform vec2 range;
-uniform float mapped, joints, dim, opacity, ambient;
+uniform float mapped, dim, opacity;
 uniform vec3 canvas, accent;
-varying vec3 vNormal, vView, vTone;
-varying float vValue, vMark, vPart;
+varying vec4 vColour;
+varying vec3 vValue;
 void main() {
-  float t = clamp((vValue - range.x) / max(range.y - range.x, 1e-9), 0.0, 1.0);
-  vec3 colour = mix(vTone, texture2D(map, vec2(t * 0.99609375 + 0.001953125, 0.5)).rgb,
-    mapped * max(joints, 1.0 - vPart));
-  colour = mix(colour, accent, vMark * 0.62);
-  vec3 n = normalize(vNormal);
-  vec3 v = normalize(vView);
-  float side = gl_FrontFacing ? 1.0 : -1.0;
-  float sky = 0.5 + 0.5 * n.z * side;
-  float key = max(0.0, 0.35 + 0.65 * dot(v * side, vec3(-0.40, 0.55, 0.73)));
-  float light = ambient + 0.18 * sky + 0.38 * key;
-  gl_FragColor = vec4(mix(colour * min(light, 1.04), canvas, dim), opacity);
+  vec3 colour = vColour.rgb;
+  if (mapped > 0.5) {
+    // from the first texel's middle to the last's
+    float t = clamp(vValue.x, 0.0, 1.0) * 0.99609375 + 0.001953125;
+    colour = mix(colour, texture2D(map, vec2(t, 0.5)).rgb, vValue.y);
+  }
+  colour = mix(colour, accent, vValue.z) * vColour.a;
+  gl_FragColor = vec4(mix(colour, canvas, dim), opacity);
 }`;
+
+const OUTLINE_VERTEX = `
+attribute float mark;
+uniform vec2 size;
+void main() {
+  vec4 place = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  vec4 ahead = projectionMatrix * modelViewMatrix * vec4(position + normal, 1.0);
+  vec2 way = (ahead.xy / ahead.w - place.xy / place.w) * size;
+  float wide = (mark > 0.9 ? 3.2 : 2.0) * min(1.0, length(way) / 0.5);
+  place.xy += normalize(way + vec2(1e-6)) * 2.0 * wide / size * place.w;
+  gl_Position = mark > 0.0 ? place : vec4(2.0, 2.0, 2.0, 1.0);
+}`;
+
+const OUTLINE_FRAGMENT = `
+uniform vec3 accent;
+void main() { gl_FragColor = vec4(accent, 1.0); }`;
+
+/** Return the material of the outline of marked parts: their far sides, some pixels larger. */
+export function outlineMaterial() {
+  return new THREE.ShaderMaterial({
+    vertexShader: OUTLINE_VERTEX,
+    fragmentShader: OUTLINE_FRAGMENT,
+    side: THREE.BackSide,
+    uniforms: { accent: { value: new THREE.Vector3() }, size: { value: new THREE.Vector2(1, 1) } },
+  });
+}
 
 /** Return the material of a grid's surface; its uniforms are set by `paintWith` and `useMap`. */
 export function surfaceMaterial({ opacity = 1 } = {}) {
@@ -88,20 +112,18 @@ export function useMap({ uniforms }, map, range = [0, 1], joints = true) {
   uniforms.mapped.value = map ? 1 : 0;
   uniforms.joints.value = joints ? 1 : 0;
   uniforms.range.value.fromArray(range);
-  if (map) uniforms.map.value = mapTexture(map);
+  if (!map || uniforms.map.value.name === map) return;
+  uniforms.map.value.dispose();
+  uniforms.map.value = mapTexture(map);
 }
 
-const textures = new Map();
-
 function mapTexture(name) {
-  if (!textures.has(name)) {
-    const texture = new THREE.DataTexture(table(name, TEXELS), TEXELS, 1);
-    texture.magFilter = THREE.LinearFilter;
-    texture.minFilter = THREE.LinearFilter;
-    texture.needsUpdate = true;
-    textures.set(name, texture);
-  }
-  return textures.get(name);
+  const texture = new THREE.DataTexture(table(name, TEXELS), TEXELS, 1);
+  texture.magFilter = THREE.LinearFilter;
+  texture.minFilter = THREE.LinearFilter;
+  texture.needsUpdate = true;
+  texture.name = name;
+  return texture;
 }
 
 /** Return a colour of a theme as three.js's lines and points take it, without conversion. */

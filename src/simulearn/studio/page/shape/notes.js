@@ -26,7 +26,9 @@ export function noteItems(viewer, result, { goals }) {
 }
 
 function heightItems(result) {
-  const joints = result.joint_numbers.map((joint, index) => ({ joint, at: centreAt(result, "joint", index, view.frame) }));
+  const joints = result.joint_numbers.map((joint, index) => ({
+    joint, at: centreAt(result, "joint", index, view.frame),
+  }));
   joints.sort((a, b) => Math.abs(b.at[2]) - Math.abs(a.at[2]));
   return joints.slice(0, MOST_HEIGHTS).map(({ joint, at }) => ({
     id: `height-${joint}`, kind: "text", className: "note-height", at, shift: [0, -14], text: number(at[2]),
@@ -70,7 +72,10 @@ function targetItems(result) {
     return [
       { id: `way-${k}`, kind: "line", a: point, b: target, className },
       { id: `place-${k}`, kind: "dot", at: point, className },
-      { id: `apart-${k}`, kind: "text", at: target, shift: [0, -16], text: mm(distance), className },
+      {
+        id: `apart-${k}`, kind: "text", at: target, shift: [0, chosen ? 20 : -16], className,
+        text: mm(distance),
+      },
       marker,
     ];
   });
@@ -108,7 +113,8 @@ export function handlesOf(viewer) {
     const { target } = state.document.goals[k] ?? {};
     if (!target) return [];
     const size = LENGTH * viewer.pixel(target);
-    return gizmoItems(target, size, project, { onPress, name: (axes) => t("shape.moveAlong", { axes }), active });
+    const name = (axes) => t("shape.moveAlong", { axes });
+    return gizmoItems(target, size, project, { onPress, name, active });
   };
 }
 

@@ -44,8 +44,8 @@ export const Playback = {
     };
     const onKeydown = (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
-      const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp: 3, PageDown: -3 }[event.key];
-      if (way) show(Math.min(LAST, Math.max(0, nextFrame(view.frame, Math.sign(way)) + way - Math.sign(way))));
+      const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+      if (way) show(nextFrame(view.frame, way));
       else if (event.key === "Home") show(0);
       else if (event.key === "End") show(LAST);
       else return;
@@ -65,16 +65,23 @@ export const Playback = {
         h("input", {
           type: "range", min: 0, max: LAST, step: 0.01, value: view.frame, disabled: props.disabled,
           "aria-label": t("shape.moment"), "aria-valuetext": moment(view.frame),
-          style: { "--done": view.frame / LAST },
           onInput: (event) => show(snapFrame(Number(event.target.value))),
           onKeydown,
+        }),
+        // What is seen of the slider moves without being painted anew, which playing would wait for.
+        h("div", { class: "shape-track", "aria-hidden": "true" }, [
+          h("div", { class: "done", style: { transform: `scaleX(${view.frame / LAST})` } }),
+        ]),
+        h("div", {
+          class: "shape-thumb", "aria-hidden": "true",
+          style: { transform: `translateX(${(100 * view.frame) / LAST}%)` },
         }),
         h("div", { class: "shape-marks", "aria-hidden": "true" }, [
           ...Array.from({ length: LAST + 1 }, (_, k) => mark(k, k === 0 || k >= LAST - 1 ? "strong" : "")),
           ...(props.snaps ?? []).map(({ released }) => mark(10 * released, "snap", t("shape.snapsHere"))),
         ]),
       ]),
-      h("output", { class: "shape-moment" }, moment(view.frame)),
+      h("output", { class: "shape-moment" }, props.disabled ? "" : moment(view.frame)),
     ]);
   },
 };

@@ -41,7 +41,9 @@ export function createPrint() {
   });
   const materials = [material(FADED.light), material(0)];
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), materials);
-  const travelMaterial = new THREE.LineDashedMaterial({ dashSize: 1.6, gapSize: 1.2, transparent: true, opacity: 0.8 });
+  const travelMaterial = new THREE.LineDashedMaterial({
+    dashSize: 1.6, gapSize: 1.2, transparent: true, opacity: 0.8, // mm
+  });
   const travels = new THREE.LineSegments(new THREE.BufferGeometry(), travelMaterial);
   const bedMaterial = new THREE.LineBasicMaterial();
   const cellMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.4 });
@@ -50,7 +52,6 @@ export function createPrint() {
   const group = new THREE.Group();
   group.add(mesh, travels, bed, cells);
   for (const one of group.children) one.frustumCulled = false;
-  group.visible = false;
   let [ribbons, path] = [null, null];
 
   const replace = (object, positions) => {
@@ -73,7 +74,6 @@ export function createPrint() {
     /** Show a toolpath (or none) on a bed { low: [x, y], high }. */
     show(toolpath, box) {
       path = toolpath;
-      group.visible = toolpath !== null;
       if (toolpath === null) return;
       ribbons = ribbonsOf(toolpath);
       replace(mesh, ribbons.positions);
@@ -95,7 +95,8 @@ export function createPrint() {
       mesh.geometry.addGroup(0, from, 0);
       mesh.geometry.addGroup(from, to - from, 1);
       travels.visible = withTravels;
-      travels.geometry.setDrawRange(ribbons.travelStart[k], ribbons.travelStart[k + 1] - ribbons.travelStart[k]);
+      const [first, end] = [ribbons.travelStart[k], ribbons.travelStart[k + 1]];
+      travels.geometry.setDrawRange(first, end - first);
     },
     setTheme(theme) {
       const mix = (a, b, t) => a.map((x, k) => x + t * (b[k] - x));
@@ -114,7 +115,7 @@ export function createPrint() {
       return [mesh, bed].flatMap((object) => {
         object.geometry.computeBoundingBox();
         const { min, max } = object.geometry.boundingBox ?? {};
-        return min ? [[min.x, min.y, min.z], [max.x, max.y, max.z], [min.x, max.y, min.z], [max.x, min.y, min.z]] : [];
+        return min ? [min.x, max.x].flatMap((x) => [[x, min.y, min.z], [x, max.y, max.z]]) : [];
       });
     },
     dispose() {

@@ -22,8 +22,10 @@ const PREFERS_STILL = globalThis.matchMedia("(prefers-reduced-motion: reduce)");
 /** Return what is drawn: { result, grid, label } of the preview, else of the answer; or null. */
 function source() {
   const { preview, answer } = state;
-  if (preview?.result?.ok !== false && preview?.result)
-    return { result: preview.result, grid: preview.grid ?? preview.document?.grid ?? preview.result.grid, label: preview.label };
+  if (preview?.result && preview.result.ok !== false) {
+    const { result, label } = preview;
+    return { result, grid: preview.grid ?? preview.document?.grid ?? result.grid, label };
+  }
   return answer ? { result: answer.result, grid: answer.document.grid, label: "" } : null;
 }
 
@@ -43,13 +45,15 @@ export const Shape = {
     const said = ref("");
     const shown = shallowRef(null); // what the viewer has: { result, grid, label }
     const coloured = shallowRef({ by: "actuator", range: [0, 1] });
-    const errors = computed(() => state.check?.document.grid === state.document.grid && state.check.errors.length > 0);
+    const errors = computed(() => (
+      state.check?.document.grid === state.document.grid && state.check.errors.length > 0
+    ));
     const other = computed(otherResult);
     const printing = computed(() => state.tab === "print" && Boolean(state.print?.toolpath));
     const goals = computed(() => state.tab === "goals");
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
-    let [triad, dimmer, reader, wanted] = [null, 0, 0, 0];
+    let [triad, dimmer, reader] = [null, 0, 0];
 
     const colour = () => {
       const by = hasValues(view.colour, shown.value?.result, other.value) ? view.colour : "actuator";
@@ -103,18 +107,21 @@ export const Shape = {
       watch(() => view.colour, colour);
       watch(() => view.ghost, (on) => viewer.value.setGhost(on));
       watch(() => view.ground, (on) => viewer.value.setGround(on), { immediate: true });
+      watch(() => view.dimensions, (on) => viewer.value.setRoomy(on), { immediate: true });
       watch(() => view.parallel, (on) => viewer.value.camera.setParallel(on), { immediate: true });
       watch(() => [state.selection, state.hover], marks);
+      watch(() => view.playing, (on) => viewer.value.setPlaying(on));
       watch(() => view.frame, (frame) => viewer.value.setFrame(frame), { flush: "sync" });
       watch(() => [
-        view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value, state.pickVertex,
-        goals.value && state.document.goals, state.selection.goal, state.hover?.goal,
+        view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value,
+        state.pickVertex, goals.value && state.document.goals, state.selection.goal, state.hover?.goal,
       ], notes);
       watch(() => [printing.value && state.print.toolpath, state.print?.layer, state.print?.travels], () => {
-        viewer.value.setPrint(printing.value ? state.print.toolpath : null, state.print?.toolpath?.bed ?? null);
-        if (printing.value) viewer.value.setLayer(state.print.layer, state.print.travels);
+        const path = printing.value ? state.print.toolpath : null;
+        viewer.value.setPrint(path, path?.bed ?? null);
+        if (path) viewer.value.setLayer(state.print.layer, state.print.travels);
       }, { immediate: true });
-      watch(() => (errors.value || (stale.value && !state.preview)), (is) => {
+      watch(() => !state.preview && (errors.value || stale.value), (is) => {
         clearTimeout(dimmer);
         if (is) dimmer = setTimeout(() => { late.value = true; }, LATE);
         else late.value = false;
@@ -157,14 +164,17 @@ export const Shape = {
       else broken.value = "missing";
     });
     onBeforeUnmount(() => {
-      for (const timer of [dimmer, reader, wanted]) clearTimeout(timer);
+      clearTimeout(dimmer);
+      clearTimeout(reader);
       triad?.dispose();
       viewer.value?.dispose();
       viewer.value = null;
     });
     const possible = (name) => hasValues(name, shown.value?.result, other.value);
-    return () => h("section", { class: ["shape", { late: late.value }], "aria-label": t("shape.title"), onKeydown }, [
-      h("div", { class: "shape-view" }, [
+    return () => h("section", {
+      class: ["shape", { late: late.value }], "aria-label": t("shape.title"), onKeydown,
+    }, [
+      h("div", { class: ["shape-view", { broken: broken.value }] }, [
         h("div", {
           class: "shape-canvas", ref: container, tabindex: 0, role: "application",
           "aria-label": t("shape.canvas"), "aria-describedby": "shape-keys",
@@ -179,9 +189,12 @@ export const Shape = {
           !state.busy && h("p", t("shape.emptyHint")),
         ]),
         !broken.value && !printing.value && h(Summary, {
-          result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value, invalid: errors.value,
+          result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value,
+          invalid: late.value && errors.value,
         }),
-        !broken.value && (shown.value || printing.value) && h(Toolbar, { run: (name) => viewer.value.command(name) }),
+        !broken.value && (shown.value || printing.value) && h(Toolbar, {
+          run: (name) => viewer.value.command(name), printing: printing.value,
+        }),
         !broken.value && shown.value && !printing.value && h(Legend, {
           ...coloured.value, possible, distance: distance.value,
         }),

@@ -4,7 +4,8 @@
 
 import { between, blend, topologyOf } from "./topology.js";
 
-export const SPACING = 4; // mm along a beam, at most
+const SPACING = { few: 4, many: 6.5 }; // mm between stations along a beam, at most
+const MANY = 100; // beams
 const ROOM = 1.3; // of the storage over what is needed, so that small edits do not ask for new one
 
 // Around a section, counter-clockwise seen against the beam's direction: right-bottom, left-bottom,
@@ -24,9 +25,10 @@ export const TONE = { beam: 0, joint: 1, fixed: 2, top: 3, bottom: 4 };
  * storage { positions, normals, values, tones, marks, index, lines }, the counts that are in use,
  * `parts` (which vertices and triangles are whose) and `stations` along each beam.
  */
-export function createSkin(result, grid, { spacing = SPACING, storage = null } = {}) {
+export function createSkin(result, grid, { spacing = null, storage = null } = {}) {
   const topology = topologyOf(result, grid);
-  const beams = topology.beams.map((beam) => stationsOf(beam, spacing));
+  const fine = spacing ?? (topology.beams.length > MANY ? SPACING.many : SPACING.few);
+  const beams = topology.beams.map((beam) => stationsOf(beam, fine));
   const vertexCount = sum(beams.map(({ t }) => t.length * ACROSS)) + sum(topology.joints.map(jointVertices));
   const indexCount = sum(beams.map(({ t, runs }) => (t.length - runs.length) * STRIPS * 6))
     + sum(topology.joints.map(({ free }) => 12 + 12 * free.length));
@@ -142,18 +144,17 @@ function layBeam(skin, at, b) {
   const { ratio } = skin.topology.beams[b];
   const { tones } = skin.storage;
   for (const { first, steps, active } of runs) {
-    for (let n = 0; n <= steps; n += 1) {
-      const station = at.vertex + (first + n) * ACROSS;
-      for (let k = 0; k < STRIPS; k += 1) {
-        const printed = active && UPPER[k] === ratio > 0;
-        const tone = printed ? (ratio > 0 ? TONE.top : TONE.bottom) : TONE.beam;
-        tones[station + 2 * k] = tone;
-        tones[station + 2 * k + 1] = tone;
-        const a = station + 2 * k;
-        if (n < steps) quad(skin, at, a, a + 1, a + 1 + ACROSS, a + ACROSS);
+    for (let k = 0; k < STRIPS; k += 1) {
+      const printed = active && UPPER[k] === ratio > 0;
+      const tone = printed ? (ratio > 0 ? TONE.top : TONE.bottom) : TONE.beam;
+      for (let n = 0; n <= steps; n += 1) {
+        const a = at.vertex + (first + n) * ACROSS + 2 * k;
+        tones[a] = tone;
+        tones[a + 1] = tone;
+        if (n === steps) continue;
+        quad(skin, at, a, a + 1, a + 1 + ACROSS, a + ACROSS);
+        if (SHARP.includes(k)) line(skin, at, a, a + ACROSS);
       }
-      if (n < steps)
-        for (const k of SHARP) line(skin, at, station + 2 * k, station + 2 * k + ACROSS);
     }
   }
   at.vertex += t.length * ACROSS;

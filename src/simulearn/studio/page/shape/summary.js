@@ -11,7 +11,8 @@ export const Summary = {
     const { result, label, late, invalid } = this;
     if (!result) return null;
     const { title, size, near, notes } = summaryOf(result);
-    const time = !label && state.answer ? t("shape.milliseconds", { ms: number(state.answer.milliseconds, 0) }) : "";
+    const time = label || !state.answer ? ""
+      : t("shape.milliseconds", { ms: number(state.answer.milliseconds, 0) });
     return h("div", { class: "shape-summary" }, [
       label && h("p", { class: "shape-label" }, label),
       h("p", { class: "shape-title" }, [

@@ -9,14 +9,16 @@ const VIEWS = [["fit", "F"], ["home", "0"], ["top", "7"], ["front", "1"], ["side
 const SHOWN = ["ghost", "ground", "dimensions", "heights"];
 
 export const Toolbar = {
-  props: { run: Function },
+  props: { run: Function, printing: Boolean },
   render() {
-    const { run } = this;
+    const { run, printing } = this;
     const projection = view.parallel ? "parallel" : "perspective";
-    return h("div", { class: "shape-toolbar", role: "toolbar", "aria-label": t("shape.views"), "aria-orientation": "vertical" }, [
+    return h("div", {
+      class: "shape-toolbar", role: "toolbar", "aria-label": t("shape.views"), "aria-orientation": "vertical",
+    }, [
       ...VIEWS.map(([name, key]) => button(name, key, () => run(name))),
       button(projection, "5", () => { view.parallel = !view.parallel; }),
-      h(Display),
+      !printing && h(Display),
     ]);
   },
 };
@@ -50,13 +52,16 @@ const Display = {
 };
 
 const toggle = (name) => h("label", { key: name }, [
-  h("input", { type: "checkbox", checked: view[name], onChange: (event) => { view[name] = event.target.checked; } }),
+  h("input", {
+    type: "checkbox", checked: view[name], onChange: (event) => { view[name] = event.target.checked; },
+  }),
   t(`shape.show-${name}`),
 ]);
 
 function button(name, key, onClick) {
   const label = t(`shape.view-${name}`);
   return h("button", {
-    type: "button", key: name, class: "shape-button", "aria-label": label, title: `${label} (${key})`, onClick,
+    type: "button", key: name, class: "shape-button", "aria-label": label, title: `${label} (${key})`,
+    onClick,
   }, icon(name));
 }

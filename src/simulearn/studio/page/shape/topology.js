@@ -50,7 +50,7 @@ export function centreAt(result, kind, index, frame) {
 export function boundsOf(result, first = 0, last = LAST) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
-  for (const [numbers, size] of [[result.joints, result.jointCount * 24], [result.beams, result.beamCount * 36]]) {
+  for (const [numbers, size] of cornerArrays(result)) {
     for (let k = first * size; k < (last + 1) * size; k += 1) {
       const axis = k % 3;
       if (numbers[k] < low[axis]) low[axis] = numbers[k];
@@ -58,6 +58,16 @@ export function boundsOf(result, first = 0, last = LAST) {
     }
   }
   return { low, high };
+}
+
+/** Return the corners [x, y, z] of all joints and sections in some frames. */
+export function cornersOf(result, frames) {
+  const points = [];
+  for (const [numbers, size] of cornerArrays(result))
+    for (const frame of frames)
+      for (let k = frame * size; k < (frame + 1) * size; k += 3)
+        points.push([numbers[k], numbers[k + 1], numbers[k + 2]]);
+  return points;
 }
 
 /** Return {before, after, t}: the two frames around a fractional one and how far it is between them. */
@@ -72,6 +82,11 @@ export function blend(numbers, size, offset, count, { before, after, t }, into) 
   const a = before * size + offset;
   const b = after * size + offset;
   for (let k = 0; k < count; k += 1) into[k] = numbers[a + k] + t * (numbers[b + k] - numbers[a + k]);
+}
+
+/** Return the numbers of joints and of beams, each with how many a frame has. */
+function cornerArrays(result) {
+  return [[result.joints, result.jointCount * 24], [result.beams, result.beamCount * 36]];
 }
 
 function meanOf(numbers, start, count) {

@@ -6,7 +6,9 @@ const AXES = { x: { view: "side", at: 0 }, y: { view: "front", at: 1 }, z: { vie
 
 /** Create the triad in an element; onPress(view) is called with the name of a view. */
 export function createTriad(container, onPress) {
-  const svg = make("svg", { class: "shape-triad", viewBox: "-32 -32 64 64", width: 64, height: 64, "aria-hidden": "true" });
+  const svg = make("svg", {
+    class: "shape-triad", viewBox: "-32 -32 64 64", width: 64, height: 64, "aria-hidden": "true",
+  });
   const axes = Object.entries(AXES).map(([name, { view }]) => {
     const group = make("g", { class: name });
     const text = make("text", {});
@@ -30,7 +32,8 @@ export function createTriad(container, onPress) {
         set(circle, { cx: (1.2 * x).toFixed(1), cy: (1.2 * y).toFixed(1) });
         set(text, { x: (1.2 * x).toFixed(1), y: (1.2 * y).toFixed(1) });
       });
-      depth.sort((a, b) => a[0] - b[0]).forEach(([, k]) => svg.append(axes[k])); // the nearest one last
+      const next = depth.sort((a, b) => a[0] - b[0]).map(([, k]) => axes[k]); // the nearest one last
+      if (next.some((group, k) => group !== svg.children[k])) svg.append(...next);
     },
     dispose: () => svg.remove(),
   };

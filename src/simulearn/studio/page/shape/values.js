@@ -101,7 +101,8 @@ function arc(sections, edge, half) {
     let square = 0;
     for (let axis = 0; axis < 3; axis += 1) {
       const k = 3 * edge + axis;
-      square += ((4 * t - 3) * sections[k] + (4 - 8 * t) * sections[k + 12] + (4 * t - 1) * sections[k + 24]) ** 2;
+      const [a, b, c] = [sections[k], sections[k + 12], sections[k + 24]];
+      square += ((4 * t - 3) * a + (4 - 8 * t) * b + (4 * t - 1) * c) ** 2;
     }
     length += weight * Math.sqrt(square);
   }

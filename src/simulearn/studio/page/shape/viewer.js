@@ -10,12 +10,16 @@ import { pick } from "./picking.js";
 import { createPrint } from "./print.js";
 import { createStage } from "./stage.js";
 import { readTheme, watchTheme } from "./theme.js";
-import { boundsOf, LAST } from "./topology.js";
+import { boundsOf, cornersOf, LAST } from "./topology.js";
 
 export { canDraw } from "./stage.js";
 
+const UNMOVED = 0.02; // frames: before it the flat sheet is not drawn beside the shape
+const PRINT_VIEW = [0, 0.42]; // rad: from above, a little aslant
 const CLICK = 5; // px that a press may move and still be no drag
 const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
+const FITTED = [0, 4, 8, 11]; // frames that are brought into view
+const ROOM = { narrow: 1.28, wide: 1.45 }; // around the shape; wide where dimensions stand beside it
 const TURN = Math.PI / 24; // of an arrow key
 const ZOOM = 1.15; // of + and -
 
@@ -24,16 +28,23 @@ export const KEYS = {
   Home: "fit", f: "fit", F: "fit", 7: "top", 1: "front", 3: "side", 0: "home", 5: "projection",
 };
 
+const passive = (grid) => grid && { ...grid, actuators: [] };
+
 /** Create a viewer in a container.
  *
  * events: onHover(part | null), onPress(part | null, event), onCamera(state), onLost(), onRestored().
  * A part is { kind, at, number } as in the skin. still() says whether motion is unwanted.
  */
 export function createViewer(container, { events = {}, still = () => false } = {}) {
-  let [theme, pointer, hovering, pressed, fitted, disposed] = [readTheme(container), null, 0, null, null, false];
-  let [overlaid, gizmo, notes, kept, printing, ghostShown, fresh] = [null, null, [], null, false, true, true];
+  let [pointer, hovering, pressed, fitted, disposed] = [null, 0, null, null, false];
+  let [overlaid, gizmo, notes, kept] = [null, null, [], null];
+  let [printing, fresh, roomy, frame] = [false, true, false, LAST];
+  const shows = { ghost: true, ground: true };
   const stage = createStage(container, {
     before: drawNotes,
+    onPace: (plain) => {
+      for (const part of [body, ground]) part.setPlain(plain);
+    },
     onLost: () => events.onLost?.(),
     onRestored: () => events.onRestored?.(),
   });
@@ -46,16 +57,25 @@ export function createViewer(container, { events = {}, still = () => false } = {
     still,
   });
   const body = createBody();
-  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong" });
+  const ghost = createBody({ opacity: 0.16, edges: 0.28, one: "lineStrong", spacing: Infinity });
   ghost.setFrame(0);
-  const other = createBody({ opacity: 0.34, edges: 0.7, one: "target" });
+  const other = createBody({ opacity: 0, edges: 0.75, one: "target" }); // two surfaces so near would flicker
   const ground = createGround();
   const print = createPrint();
   const annotations = createAnnotations(container);
   const parts = [body, ghost, other, ground, print];
   ghost.group.renderOrder = 3;
   stage.scene.add(ground.group, body.group, ghost.group, other.group, print.group);
-  const shapes = () => [ground.group, body.group, ghost.group, other.group];
+  /** Show what is to be seen now: the print, or the shape with what belongs to it. */
+  const arrange = () => {
+    const shape = Boolean(body.shown) && !printing;
+    body.group.visible = shape;
+    ground.group.visible = shape && shows.ground;
+    ghost.group.visible = shape && shows.ghost && frame > UNMOVED;
+    other.group.visible = shape && Boolean(overlaid);
+    print.group.visible = printing;
+    stage.invalidate();
+  };
 
   function drawNotes() {
     const items = gizmo ? [...notes, ...gizmo(project)] : notes;
@@ -76,9 +96,8 @@ export function createViewer(container, { events = {}, still = () => false } = {
   const rayAt = (x, y) => {
     const box = stage.canvas.getBoundingClientRect();
     const caster = new THREE.Raycaster();
-    caster.setFromCamera(
-      new THREE.Vector2(((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2), camera.camera,
-    );
+    const [across, down] = [(x - box.left) / box.width, (y - box.top) / box.height];
+    caster.setFromCamera(new THREE.Vector2(2 * across - 1, 1 - 2 * down), camera.camera);
     return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() };
   };
   const partAt = ({ clientX, clientY }) => {
@@ -108,21 +127,24 @@ export function createViewer(container, { events = {}, still = () => false } = {
     events.onPress?.(partAt(event), event);
   };
   const listeners = {
-    pointermove: onMove, pointerleave: onLeave, pointerdown: onDown, pointerup: onUp, dblclick: () => viewer.fit(),
+    pointermove: onMove, pointerleave: onLeave, pointerdown: onDown, pointerup: onUp,
+    dblclick: () => viewer.fit(),
   };
-  for (const [name, listener] of Object.entries(listeners)) stage.canvas.addEventListener(name, listener);
+  for (const [name, listener] of Object.entries(listeners))
+    stage.canvas.addEventListener(name, listener);
 
   const applyTheme = () => {
-    theme = readTheme(container);
+    const theme = readTheme(container);
     stage.scene.background = new THREE.Color().setRGB(...theme.canvas, THREE.LinearSRGBColorSpace);
     for (const part of parts) part.setTheme(theme);
-    stage.invalidate();
+    stage.invalidate({ still: true });
   };
   const endTheme = watchTheme(() => requestAnimationFrame(() => !disposed && applyTheme()));
   const observer = new ResizeObserver(([entry]) => {
     const { width, height } = entry.contentRect;
     if (width === 0 || height === 0) return;
     stage.resize(width, height);
+    body.setSize(width, height);
     camera.resize(width, height);
     if (!camera.touched) viewer.fit({ view: fresh ? "home" : null, animate: false });
   });
@@ -130,15 +152,12 @@ export function createViewer(container, { events = {}, still = () => false } = {
   applyTheme();
   stage.setCamera(camera.camera);
 
-  const boxPoints = () => {
-    if (!body.shown) return [];
-    const { low, high } = boundsOf(body.shown.result, 0, LAST);
-    return [low, high].flatMap(([x]) => [low, high].flatMap(([, y]) => [low, high].map(([, , z]) => [x, y, z])));
-  };
   const sizeOf = ({ low, high }) => Math.hypot(...high.map((x, axis) => x - low[axis]));
   const grown = (bounds) => {
     const ratio = sizeOf(bounds) / sizeOf(fitted);
-    const away = Math.hypot(...bounds.low.map((x, k) => (x + bounds.high[k] - fitted.low[k] - fitted.high[k]) / 2));
+    const middle = ({ low, high }) => low.map((x, k) => (x + high[k]) / 2);
+    const before = middle(fitted);
+    const away = Math.hypot(...middle(bounds).map((x, k) => x - before[k]));
     return ratio > GROWN || ratio < 1 / GROWN || away > 0.5 * sizeOf(fitted);
   };
 
@@ -149,86 +168,86 @@ export function createViewer(container, { events = {}, still = () => false } = {
     /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
     show(result, grid = null) {
       body.show(result, grid);
-      ghost.show(ghostShown ? result : null, grid);
+      viewer.overlay(null);
       if (result) {
+        if (shows.ghost) ghost.show(result, passive(grid));
         ground.place(boundsOf(result, 0, 0), body.mesh);
         const bounds = boundsOf(result);
-        if (!fitted || grown(bounds)) {
-          fitted = bounds;
-          viewer.fit({ view: fresh ? "home" : null, animate: false });
-        }
+        if (!fitted || grown(bounds)) viewer.fit({ view: fresh ? "home" : null, animate: false });
       }
-      ground.setVisible(Boolean(result));
-      viewer.overlay(overlaid);
-      stage.invalidate();
+      arrange();
     },
-    setFrame(frame) {
+    setFrame(next) {
+      frame = next;
       body.setFrame(frame);
       other.setFrame(frame);
-      ghost.group.visible = ghostShown && Boolean(body.shown) && !printing && frame > 0.02;
-      stage.invalidate();
+      arrange();
     },
+    /** Say whether frame will follow frame. */
+    setPlaying: (on) => stage.hold(on),
     setColour(by, reference = null) {
       body.setColour(by, reference);
       stage.invalidate();
     },
     setGhost(on) {
-      ghostShown = on;
-      if (body.shown) ghost.show(on ? body.shown.result : null, body.shown.grid);
-      stage.invalidate();
+      shows.ghost = on;
+      if (on && body.shown) ghost.show(body.shown.result, passive(body.shown.grid));
+      arrange();
+    },
+    /** Leave room beside the shape when it is fitted. */
+    setRoomy(on) {
+      roomy = on;
+      if (!camera.touched) viewer.fit();
     },
     setGround(on) {
-      ground.setVisible(on && Boolean(body.shown) && !printing);
-      stage.invalidate();
+      shows.ground = on;
+      arrange();
     },
     setDim(dim) {
       body.setDim(dim);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     setMarks(marks) {
       body.setMarks(marks);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     /** Lay another result of the same grid over the shown one, translucent; null for none. */
     overlay(result) {
-      overlaid = result;
-      other.show(body.shown ? result : null, body.shown?.grid ?? null);
-      stage.invalidate();
+      overlaid = body.shown && result;
+      other.show(overlaid, body.shown?.grid ?? null);
+      arrange();
     },
     /** Show annotations; `handles` (project -> items) are made anew for every drawing. */
     setNotes(items, handles = null) {
       notes = items;
       gizmo = handles;
       annotations.set(handles ? [...items, ...handles(project)] : items);
-      stage.invalidate();
+      stage.invalidate({ still: true });
     },
     /** Show a toolpath in place of the shape, seen from above; null brings the shape back. */
     setPrint(toolpath, bed = null) {
       const on = toolpath !== null;
       if (print.path !== toolpath) print.show(toolpath, bed);
-      if (on !== printing) {
-        printing = on;
-        for (const group of shapes()) group.visible = !on && Boolean(body.shown);
-        if (!on) {
-          ghost.group.visible = ghostShown && Boolean(body.shown);
-          other.group.visible = Boolean(overlaid && body.shown);
-        }
-        if (on) kept = camera.state();
-        else if (kept) camera.set(kept);
-        if (on) viewer.fit({ view: [0, 0.42], animate: false });
-      }
-      stage.invalidate();
+      const changed = on !== printing;
+      printing = on;
+      arrange();
+      if (!changed) return;
+      if (on) {
+        kept = { ...camera.state(), touched: camera.touched };
+        viewer.fit({ view: PRINT_VIEW, animate: false });
+      } else if (kept.touched) camera.set(kept);
+      else viewer.fit({ view: [kept.azimuth, kept.polar], animate: false });
     },
     setLayer(layer, travels) {
       print.setLayer(layer, travels);
       stage.invalidate();
     },
     fit(options = {}) {
-      const points = printing ? print.points() : boxPoints();
+      const points = printing ? print.points() : body.shown ? cornersOf(body.shown.result, FITTED) : [];
       if (points.length && stage.size.width) {
         fresh = false;
         if (!printing) fitted = boundsOf(body.shown.result);
-        camera.fit(points, options);
+        camera.fit(points, { margin: roomy ? ROOM.wide : ROOM.narrow, ...options });
       }
     },
     /** Do what a key of `KEYS` says, orbit by arrows, zoom by + and -; return whether it did. */
@@ -246,14 +265,16 @@ export function createViewer(container, { events = {}, still = () => false } = {
     command(name) {
       if (name === "fit") viewer.fit();
       else if (name === "projection") camera.setParallel(!camera.isParallel);
-      else camera.look(name);
+      else if (camera.touched) camera.look(name);
+      else viewer.fit({ view: name });
     },
     dispose() {
       disposed = true;
       endTheme();
       observer.disconnect();
       cancelAnimationFrame(hovering);
-      for (const [name, listener] of Object.entries(listeners)) stage.canvas.removeEventListener(name, listener);
+      for (const [name, listener] of Object.entries(listeners))
+        stage.canvas.removeEventListener(name, listener);
       annotations.dispose();
       camera.dispose();
       for (const part of parts) part.dispose();

@@ -19,17 +19,19 @@ export function moment(frame) {
 export function summaryOf(result) {
   const { low, high } = boundsOf(result, LAST, LAST);
   const rise = result.rise_mm;
-  const flat = Math.abs(rise) < 0.05;
+  const flat = Math.abs(rise) < 0.05; // mm, what would be written as 0
+  const bound = result.bound_mm ?? null;
+  const side = (axis) => number(high[axis] - low[axis], 0);
   const notes = [];
   if (!result.stable) notes.push({ kind: "warning", text: t("shape.unstable") });
   for (const { released } of result.snaps ?? [])
     notes.push({ kind: "warning", text: t("shape.snaps", { percent: number(100 * released, 0) }) });
   return {
-    title: flat ? t("shape.staysFlat") : t(rise > 0 ? "shape.rises" : "shape.falls", { mm: number(Math.abs(rise)) }),
-    size: t("shape.size", {
-      width: number(high[0] - low[0], 0), depth: number(high[1] - low[1], 0), height: number(high[2] - low[2], 0),
+    title: t(flat ? "shape.staysFlat" : rise > 0 ? "shape.rises" : "shape.falls", {
+      mm: number(Math.abs(rise)),
     }),
-    near: result.bound_mm == null ? "" : t("shape.bound", { mm: number(result.bound_mm, result.bound_mm < 0.1 ? 2 : 1) }),
+    size: t("shape.size", { width: side(0), depth: side(1), height: side(2) }),
+    near: bound === null ? "" : t("shape.bound", { mm: number(bound, bound < 0.1 ? 2 : 1) }),
     notes,
   };
 }

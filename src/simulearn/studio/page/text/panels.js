@@ -26,7 +26,6 @@ export const panels = {
     farthest: "Farthest: {name}, {mm}",
     goalFacts: "{name}, {mm} from its target",
     noShape: "The design has no shape at the moment.",
-    withPreview: "{mm} with what is shown",
     target: "Target, mm from the fixed joint",
     targetOf: "{axis} of the target of {name}",
     weight: "Weight",
@@ -47,6 +46,7 @@ export const panels = {
     suggestionsFailed: "There are no suggestions for this design.",
     suggestionsNone: "Nothing of the design can be changed by one step.",
     suggestionsWorse: "No single change brings the design closer. A search changes several at once.",
+    arrived: "The points are at their targets.",
     moveJoint: "Move joint {k} {arrow} {mm}",
     changeRatio: "Actuator {b}: {from} → {to}",
     andMore: "{first} and {n} more",
@@ -54,7 +54,6 @@ export const panels = {
     farther: "{mm} farther",
     same: "no change",
     cardName: "{words}. Distance then {mm}, {gain}",
-    after: "Distance with this change",
     didSuggestion: "suggestion: {words}",
     tookSuggestion: "Taken: {words}",
 
@@ -89,13 +88,13 @@ export const panels = {
     resultTitle: "Found",
     byModel: "By the model",
     byFea: "By finite elements",
-    notChecked: "not checked",
+    notChecked: "Not checked by finite elements; take it, then check it.",
     before: "Before",
     apart: "Model and finite elements apart",
     beyondBound: "They are farther apart than the model's own bound of {mm}. Trust finite elements.",
     whyNoFea: "Finite elements have no answer: {why}",
     steps: "Steps",
-    stepValue: "Step {n} of {all}: {mm}",
+    stepValue: "Step {n} of {all}: {mm} by the model",
     stepBack: "Step back",
     stepOn: "Step on",
     stepLabel: "Step {n} of {all}",
@@ -110,7 +109,7 @@ export const panels = {
     // Connection
     undo: "Undo",
     lost: "The server does not answer. It is asked again until it does.",
-    jobLost: "The server was started anew and has lost this computation. Start it again.",
+    jobLost: "The server was started anew and has lost this computation.",
     offline: "The server does not answer.",
     busy: "The server is busy. Try again in a moment.",
 
@@ -155,7 +154,6 @@ export const panels = {
     // Print
     print: "Print",
     printer: "Printer",
-    printersFailed: "The printers are not known: {why}",
     bed: "Bed",
     nozzle: "Nozzle",
     printTime: "Time",
@@ -184,7 +182,6 @@ export const panels = {
     beforePrint: "Before you print",
     beforePrintNote: "Nobody has run these profiles on the machine. Look at the file in your slicer's "
       + "viewer, watch the first layer, and stay with the printer.",
-    printWarnings: "Warnings",
     didPrinter: "printer: {printer}",
   },
   de: {
@@ -212,7 +209,6 @@ export const panels = {
     farthest: "Am weitesten: {name}, {mm}",
     goalFacts: "{name}, {mm} vom Ziel",
     noShape: "Der Entwurf hat gerade keine Form.",
-    withPreview: "{mm} mit dem Gezeigten",
     target: "Ziel, mm vom festen Knoten",
     targetOf: "{axis} des Ziels von {name}",
     weight: "Gewicht",
@@ -226,12 +222,15 @@ export const panels = {
     didRemoveGoal: "Ziel entfernen: {name}",
 
     suggestions: "Vorschläge",
-    suggestionsNote: "Die einzelnen Änderungen, die am meisten helfen. Zeigen zum Ansehen, Klick zum Übernehmen.",
+    suggestionsNote: "Die einzelnen Änderungen, die am meisten helfen. Zeigen, um sie zu sehen; "
+      + "klicken, um sie zu übernehmen.",
     suggesting: "Die besten Änderungen werden gesucht …",
     suggestionsOld: "Wird erneuert: diese gehören zu einem früheren Entwurf.",
     suggestionsFailed: "Für diesen Entwurf gibt es keine Vorschläge.",
     suggestionsNone: "Nichts am Entwurf lässt sich um einen Schritt ändern.",
-    suggestionsWorse: "Keine einzelne Änderung bringt den Entwurf näher. Eine Suche ändert mehreres zugleich.",
+    suggestionsWorse: "Keine einzelne Änderung bringt den Entwurf näher. Eine Suche ändert mehreres "
+      + "zugleich.",
+    arrived: "Die Punkte sind an ihren Zielen.",
     moveJoint: "Knoten {k} schieben {arrow} {mm}",
     changeRatio: "Aktor {b}: {from} → {to}",
     andMore: "{first} und {n} mehr",
@@ -239,7 +238,6 @@ export const panels = {
     farther: "{mm} weiter",
     same: "keine Änderung",
     cardName: "{words}. Abstand dann {mm}, {gain}",
-    after: "Abstand mit dieser Änderung",
     didSuggestion: "Vorschlag: {words}",
     tookSuggestion: "Übernommen: {words}",
 
@@ -273,13 +271,14 @@ export const panels = {
     resultTitle: "Gefunden",
     byModel: "Nach dem Modell",
     byFea: "Nach finiten Elementen",
-    notChecked: "nicht geprüft",
+    notChecked: "Nicht mit finiten Elementen geprüft; erst übernehmen, dann prüfen.",
     before: "Vorher",
     apart: "Abstand zwischen beiden",
-    beyondBound: "Das ist mehr als die Schranke des Modells von {mm}. Finiten Elementen ist zu trauen.",
+    beyondBound: "Beide liegen weiter auseinander als die Schranke des Modells von {mm}. Es gelten die finiten "
+      + "Elemente.",
     whyNoFea: "Finite Elemente haben keine Antwort: {why}",
     steps: "Schritte",
-    stepValue: "Schritt {n} von {all}: {mm}",
+    stepValue: "Schritt {n} von {all}: {mm} nach dem Modell",
     stepBack: "Schritt zurück",
     stepOn: "Schritt vor",
     stepLabel: "Schritt {n} von {all}",
@@ -293,7 +292,7 @@ export const panels = {
 
     undo: "Rückgängig",
     lost: "Der Server antwortet nicht. Er wird weiter gefragt.",
-    jobLost: "Der Server wurde neu gestartet und kennt diese Rechnung nicht mehr. Bitte neu beginnen.",
+    jobLost: "Der Server wurde neu gestartet und kennt diese Rechnung nicht mehr.",
     offline: "Der Server antwortet nicht.",
     busy: "Der Server ist ausgelastet. Bitte gleich noch einmal versuchen.",
 
@@ -336,7 +335,6 @@ export const panels = {
 
     print: "Druck",
     printer: "Drucker",
-    printersFailed: "Die Drucker sind nicht bekannt: {why}",
     bed: "Druckbett",
     nozzle: "Düse",
     printTime: "Zeit",
@@ -365,7 +363,6 @@ export const panels = {
     beforePrint: "Vor dem Druck",
     beforePrintNote: "Niemand hat diese Profile auf der Maschine erprobt. Sehen Sie die Datei in der "
       + "Vorschau Ihres Slicers an, beobachten Sie die erste Schicht und bleiben Sie beim Drucker.",
-    printWarnings: "Warnungen",
     didPrinter: "Drucker: {printer}",
   },
 };

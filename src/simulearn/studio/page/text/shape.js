@@ -2,7 +2,9 @@ export const shape = {
   en: {
     title: "Shape",
     canvas: "Shape in space",
-    keys: "Arrow keys turn the view, with shift they move it, plus and minus zoom, F fits the shape, 7, 1 and 3 look from above, from the front and from the side, 0 aslant, 5 changes the projection, the space bar plays.",
+    keys: "Arrow keys turn the view, with shift they move it, plus and minus zoom, "
+      + "F fits the shape, 7, 1 and 3 look from above, from the front and from the side, "
+      + "0 aslant, 5 changes the projection, the space bar plays.",
     rises: "Rises {mm} mm",
     falls: "Falls {mm} mm",
     staysFlat: "Stays flat",
@@ -65,7 +67,9 @@ export const shape = {
   de: {
     title: "Form",
     canvas: "Form im Raum",
-    keys: "Pfeiltasten drehen die Ansicht, mit Umschalt verschieben sie sie, Plus und Minus zoomen, F passt ein, 7, 1 und 3 zeigen von oben, vorn und der Seite, 0 schräg, 5 wechselt die Projektion, die Leertaste spielt ab.",
+    keys: "Pfeiltasten drehen die Ansicht, mit Umschalt verschieben sie sie, Plus und Minus zoomen, "
+      + "F passt ein, 7, 1 und 3 zeigen von oben, von vorn und von der Seite, "
+      + "0 schräg, 5 wechselt die Projektion, die Leertaste spielt ab.",
     rises: "Hebt sich um {mm} mm",
     falls: "Senkt sich um {mm} mm",
     staysFlat: "Bleibt flach",
