@@ -10,9 +10,9 @@ export function close() {
   state.dialog = null;
 }
 
-/** Slots: default, and actions at its bottom. */
+/** Slots: default, and actions at its bottom. reading: there is nothing in it to go to by keys but its text. */
 export const Dialog = {
-  props: { title: String, kind: String },
+  props: { title: String, kind: String, reading: Boolean },
   setup(props, { slots }) {
     const root = ref(null);
     const id = useId();
@@ -32,7 +32,7 @@ export const Dialog = {
           h("h2", { id }, props.title),
           iconButton("close", t("common.close"), close),
         ]),
-        h("div", { class: "dialog-body" }, slots.default()),
+        h("div", { class: "dialog-body", tabindex: props.reading ? 0 : undefined }, slots.default()),
         slots.actions && h("div", { class: "dialog-actions" }, slots.actions()),
       ]),
     ]);

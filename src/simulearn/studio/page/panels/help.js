@@ -31,7 +31,7 @@ const entry = ([keys, text]) => h("div", { key: keys }, [
 ]);
 
 export const HelpDialog = {
-  render: () => h(Dialog, { title: t("common.help"), kind: "wide" }, {
+  render: () => h(Dialog, { title: t("common.help"), kind: "wide", reading: true }, {
     default: () => h("div", { class: "key-groups" }, Object.entries(KEYS).map(([part, keys]) =>
       h("section", { class: "keys", key: part }, [h("h3", t(`common.${part}`)), h("dl", keys.map(entry))]))),
   }),

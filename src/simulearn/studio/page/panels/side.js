@@ -22,7 +22,7 @@ export const Side = {
       rove(event, [...event.currentTarget.querySelectorAll("[role=tab]")])?.click();
     };
     const tab = (name) => h("button", {
-      key: name, type: "button", role: "tab", id: `tab-${name}`, "aria-controls": "tab-panel",
+      key: name, type: "button", role: "tab", id: `tab-${name}`, "aria-controls": view.side ? "tab-panel" : undefined,
       "aria-selected": String(state.tab === name), tabindex: state.tab === name ? 0 : -1,
       onClick: () => choose(name),
     }, t(`common.tab_${name}`));

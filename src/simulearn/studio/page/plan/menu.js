@@ -92,8 +92,8 @@ export const Menu = {
       const height = list.reduce((sum, group) => sum + group.length * ROW + RULE, 0);
       const window = { width: innerWidth, height: innerHeight };
       const [x, y] = clamped(onPage(menu.screen), { width: WIDTH, height }, window);
-      // On the page itself, since a low plan would cut it off.
-      return h(Teleport, { to: "body" }, h("div", {
+      // Outside the plan, since a low one would cut it off.
+      return h(Teleport, { to: "main" }, h("div", {
         class: "plan-menu", role: "menu", "aria-label": t("plan.menu"), onKeydown, onFocusout,
         ref: (el) => {
           element = el;

@@ -4,7 +4,7 @@ import { h, onBeforeUnmount, onMounted, watch } from "/libraries/vue.js";
 import { select, state } from "../store.js";
 import { t } from "../text/text.js";
 import {
-  copySelection, duplicateSelection, flipBeams, mirrorSelection, moveFocus, nudge, paste, redoLast,
+  canPaste, copySelection, duplicateSelection, flipBeams, mirrorSelection, moveFocus, nudge, paste, redoLast,
   removeSelection, rotateSelection, selectAll, setBeams, stepBeams, undoLast, useTool, hasSelection,
 } from "./actions.js";
 import { anyVisible, pan, sizeScale, toPlan, toScreen } from "./camera.js";
@@ -83,6 +83,7 @@ export const Plan = {
       if (event.key === "Enter" && svg.contains(event.target)) return pick(event);
       const name = command(event);
       if (!name || (inButton && (name === "arrow" || name === "focus"))) return false;
+      if (name === "paste" && !canPaste()) return false; // the page may open what is pasted
       return run(name, event);
     }
 
