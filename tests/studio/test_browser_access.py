@@ -16,7 +16,11 @@ def axe():
 
     def wrong(page):
         found = runner.run(page, options=options).response["violations"]
-        return [(one["id"], node["target"], node["failureSummary"]) for one in found for node in one["nodes"]]
+        return [
+            (one["id"], node["target"], node["failureSummary"])
+            for one in found
+            for node in one["nodes"]
+        ]
 
     return wrong
 
