@@ -14,8 +14,8 @@ from pathlib import Path
 
 from playwright.sync_api import Browser, sync_playwright
 
-# As on a machine without a graphics card, so that every machine gives the same picture; nothing goes
-# out to the network.
+# As on a machine without a graphics card, so that every machine gives the same picture; nothing
+# goes out to the network.
 OPTIONS = [
     "--no-sandbox",
     "--disable-gpu",

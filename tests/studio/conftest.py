@@ -1,6 +1,7 @@
 """A running studio and a browser for the tests of the page."""
 
 import os
+import shutil
 
 import pytest
 
@@ -70,3 +71,11 @@ def visit(browser, forgiven):
 def page(visit, request):
     """A page of a new visitor."""
     return visit(**getattr(request, "param", {}))
+
+
+@pytest.fixture(scope="session")
+def node():
+    """The program node, which runs the page's functions."""
+    found = shutil.which("node")
+    required("node", found is not None)
+    return found

@@ -167,7 +167,9 @@ def document(page: Page) -> Any:
 
 def fact(place: Locator, name: str) -> Locator:
     """Return what a list of facts says of a name."""
-    return place.locator("dl > div").filter(has=place.page.get_by_text(name, exact=True)).locator("dd")
+    return (
+        place.locator("dl > div").filter(has=place.page.get_by_text(name, exact=True)).locator("dd")
+    )
 
 
 def focused(page: Page) -> str:

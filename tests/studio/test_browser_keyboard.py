@@ -15,9 +15,7 @@ def test_a_grid_is_changed(page, studio):
     page.keyboard.press("Enter")
     page.keyboard.press("-")
     page.keyboard.press("-")
-    expect(do.beam(page, 0)).to_have_accessible_name(
-        re.compile("^Beam 0, .* 50 % top, selected$")
-    )
+    expect(do.beam(page, 0)).to_have_accessible_name(re.compile("^Beam 0, .* 50 % top, selected$"))
     page.keyboard.press("Escape")
     page.keyboard.press("Escape")
     page.keyboard.press("Control+ArrowLeft")

@@ -13,15 +13,15 @@ SIMULATE = "**/api/simulate"
 TOP = (32, 65)  # mm, on beam 11
 
 
-def rise(page, studio):
-    """Return what the page must say of its design, by the server's own answer."""
-    asked = {"grids": [do.document(page)["grid"]]}
-    answer = page.request.post(f"{studio.url}/api/simulate", data=asked).json()["results"][0]
-    return f"{answer['rise_mm']:.1f}".removesuffix(".0")
+def shown(page):
+    """Return what the page says of the shape: how far it rises, and its size."""
+    words = do.shape(page).locator(".shape-title, .shape-size")
+    return [text.strip() for text in words.all_inner_texts()]
 
 
 def test_the_last_change_wins_over_slow_answers(page, studio):
     do.opened(page, studio.url)
+    before = shown(page)
     waiting = []
     page.route(SIMULATE, lambda route: waiting.append(route))
     do.click(page, TOP)
@@ -37,7 +37,10 @@ def test_the_last_change_wins_over_slow_answers(page, studio):
     expect(do.beam(page, 11)).to_have_accessible_name(re.compile("25 % top"))
     do.says(page, "Updating…")  # what has come is of an earlier design
     waiting.pop().continue_()
-    do.says(page, f"Valid, rises {rise(page, studio)} mm")
+    do.simulated(page)
+    do.saved(page)
+    other = do.opened(page.context.new_page(), page.url)  # simulates the last design alone
+    assert shown(page) == shown(other) != before
     expect(do.shape(page).get_by_text("updating", exact=True)).to_be_hidden()
 
 

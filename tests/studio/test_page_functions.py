@@ -1,8 +1,6 @@
 """The functions of the studio's page: their own tests, and that they agree with the library."""
 
 import json
-import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -29,16 +27,6 @@ from simulearn.material import load_material
 PAGE = Path(__file__).parent / "page"
 MATERIAL = load_material("pla-hot-water")
 MOST = 120  # seconds for node, on a busy machine
-
-
-@pytest.fixture(scope="module")
-def node():
-    found = shutil.which("node")
-    if found is None:
-        if "node" in os.environ.get("SIMULEARN_REQUIRE", ""):
-            pytest.fail("Node.js is required here, but node was not found")
-        pytest.skip("node is not installed")
-    return found
 
 
 @pytest.fixture

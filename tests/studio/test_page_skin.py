@@ -2,8 +2,6 @@
 
 import base64
 import json
-import os
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -20,16 +18,6 @@ SPACING = 4.0  # mm
 FRAMES = [0, 6, 11]
 MOST = 120  # seconds for node, on a busy machine
 BEAM, JOINT, FIXED, TOP, BOTTOM = range(5)  # tones of the page
-
-
-@pytest.fixture(scope="module")
-def node():
-    found = shutil.which("node")
-    if found is None:
-        if "node" in os.environ.get("SIMULEARN_REQUIRE", ""):
-            pytest.fail("Node.js is required here, but node was not found")
-        pytest.skip("node is not installed")
-    return found
 
 
 @pytest.fixture

@@ -28,7 +28,7 @@ export const PaneSwitch = {
       return h(Segmented, {
         class: "pane-switch", label: t("common.panes"), compact: props.compact,
         options: phone.value ? options.filter(({ value }) => value !== "both") : options,
-        value: phone.value && view.pane === "both" ? "plan" : view.pane,
+        value: phone.value && view.pane === "both" ? "shape" : view.pane,
         onChoose: (pane) => { view.pane = pane; },
       });
     };
@@ -40,7 +40,7 @@ export const Views = {
     const root = ref(null);
     const phone = useMedia(PHONE);
     const narrow = useMedia(NARROW);
-    const pane = computed(() => (phone.value && view.pane === "both" ? "plan" : view.pane));
+    const pane = computed(() => (phone.value && view.pane === "both" ? "shape" : view.pane));
     const shareAt = (event) => {
       const box = root.value.getBoundingClientRect();
       return (event.clientX - box.left) / box.width;
