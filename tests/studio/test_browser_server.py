@@ -44,6 +44,17 @@ def test_the_last_change_wins_over_slow_answers(page, studio):
     expect(do.shape(page).get_by_text("updating", exact=True)).to_be_hidden()
 
 
+def test_an_edit_undone_at_once_is_saved(page, studio):
+    do.opened(page, studio.url)
+    page.get_by_label("Name of the design").fill("Mine")
+    do.saved(page)
+    do.click(page, TOP)
+    page.keyboard.press("-")
+    page.keyboard.press("Control+z")
+    expect(do.beam(page, 11)).to_have_accessible_name(re.compile("100 % top"))
+    do.saved(page)
+
+
 def test_without_a_server_work_goes_on(page, studio, forgiven):
     do.opened(page, studio.url)
     page.get_by_label("Name of the design").fill("Away")

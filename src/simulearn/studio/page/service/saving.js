@@ -153,7 +153,11 @@ function changed() {
   }
   clearTimeout(copyTimer);
   copyTimer = setTimeout(keep, COPY_AFTER);
-  if (state.document === saved || state.saving === "conflict") return;
+  if (state.saving === "conflict") return;
+  if (state.document === saved) {
+    saveNow(); // an edit was undone before it was sent
+    return;
+  }
   if (state.saving !== "offline") state.saving = "saving";
   clearTimeout(timer);
   timer = setTimeout(saveNow, SAVE_AFTER);
@@ -172,7 +176,11 @@ function keep() {
 /** Save the document on the server now, and again until it has it. */
 export async function saveNow() {
   clearTimeout(timer);
-  if (sending || state.address === null || state.document === saved || state.saving === "conflict") return;
+  if (sending || state.address === null || state.saving === "conflict") return;
+  if (state.document === saved) {
+    state.saving = "saved";
+    return;
+  }
   sending = true;
   const turn = opened;
   const { address, document } = state;
