@@ -84,6 +84,9 @@ SMALL = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobil
 @pytest.mark.parametrize("page", looks(**SMALL)[:1], indirect=True, ids=["light"])
 def test_phone(page, studio, axe):
     page.goto(studio.url)
+    do.simulated(page)
+    assert axe(page) == []
+    page.get_by_role("radio", name="Plan").click()
     expect(do.joints(page)).to_have_count(9)
     assert axe(page) == []
     do.tab(page, "Design")

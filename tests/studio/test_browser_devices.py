@@ -33,8 +33,7 @@ def touch(page):
 
 @pytest.mark.parametrize("page", [PHONE, TABLET], indirect=True, ids=["phone", "tablet"])
 def test_small_windows_are_enough(page, studio):
-    page.goto(studio.url)
-    expect(do.joints(page)).to_have_count(9)
+    do.opened(page, studio.url)
     for name in TABS:
         panel = do.tab(page, name)
         expect(panel.get_by_role("button").first).to_be_visible()
@@ -43,9 +42,9 @@ def test_small_windows_are_enough(page, studio):
     do.tab(page, "Design")
     if page.viewport_size["width"] < 600:
         do.button(page, "Close the panel").click()
-        page.get_by_role("radio", name="Shape").click()
         expect(page.get_by_role("application", name="Shape in space")).to_be_visible()
         page.get_by_role("radio", name="Plan").click()
+    expect(do.joints(page)).to_have_count(9)
     page.touchscreen.tap(*do.at(page, (32, 65)))
     do.button(page, "A quarter more to the bottom").tap()
     expect(do.beam(page, 11)).to_have_accessible_name(re.compile("75 % top"))
