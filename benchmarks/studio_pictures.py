@@ -18,6 +18,7 @@ from browsing import chromium, running
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "studio"
 WIDE, TABLET, PHONE = (1280, 800), (820, 1180), (390, 844)
 COLOURS = 128  # of a picture, which has few tones and should load fast
+SETTLED = 600  # ms after which a shape that moved is drawn finely
 SECONDS = 60_000.0  # ms that a computation may take
 Shot = Callable[[Page], None]
 
@@ -207,9 +208,11 @@ def animation(browser: Browser, url: str, path: Path) -> None:
     for k in range(1, 21):
         turn = np.sin(np.pi * k / 20)
         page.mouse.move(x - 26 * turn * scale, y + 22 * turn * scale)
-        page.wait_for_timeout(120)
+        page.wait_for_timeout(SETTLED)
         take(70)
     page.mouse.up()
+    page.keyboard.press("Escape")
+    page.mouse.move(700, 640)
     for ratio in (0.25, 0.5, 0.75, 1.0):
         page.evaluate(
             """async (ratio) => {
@@ -219,12 +222,12 @@ def animation(browser: Browser, url: str, path: Path) -> None:
             }""",
             ratio,
         )
-        page.wait_for_timeout(250)
+        page.wait_for_timeout(SETTLED)
         take(350)
     slider = page.get_by_role("slider", name="From flat to morphed")
     for frame in [*np.linspace(0, 11, 24), *[11.0] * 3]:
         slider.fill(f"{frame:.2f}")
-        page.wait_for_timeout(80)
+        page.wait_for_timeout(SETTLED)
         take(80 if frame < 11 else 700)
     small = [one.convert("RGB").quantize(96, dither=Image.Dither.NONE) for one in frames]
     small[0].save(

@@ -58,11 +58,11 @@ function drawing({ points }) {
   const [p, q] = points.slice(-2);
   const { entry } = editor;
   const field = (name, value, unit) =>
-    h("span", { class: ["field", { active: entry?.field === name, typed: entry?.[name] }] }, [
+    h("span", { class: ["measure", { active: entry?.field === name, typed: entry?.[name] }] }, [
       entry?.[name] || value, h("i", { class: "caret" }), h("small", unit),
     ]);
   return [
-    h("div", { class: "fields" }, [
+    h("div", { class: "measures" }, [
       field("length", shown(distance(p, q)), "mm"), field("angle", shown(angle(p, q)), "°"),
     ]),
     snapWord(),
