@@ -1,6 +1,7 @@
 """A client that asks the studio's application without a network."""
 
 import asyncio
+from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 
@@ -8,6 +9,12 @@ from simulearn.studio import create_app
 from simulearn.studio.settings import Settings
 
 HOME = "http://127.0.0.1:8000"
+
+
+def awaited(coroutine):
+    """Return what a coroutine returns; it runs in a thread of its own."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, coroutine).result()
 
 
 class Client:
@@ -18,7 +25,7 @@ class Client:
         self._home = home
 
     def request(self, method, path, **options):
-        return asyncio.run(self._request(method, path, options))
+        return awaited(self._request(method, path, options))
 
     def get(self, path, **options):
         return self.request("GET", path, **options)

@@ -27,7 +27,7 @@ def studio(tmp_path_factory):
         yield one
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")  # while it is open, its loop runs in this thread
 def browser():
     required("chromium", browsing.chromium_path() is not None)
     from playwright.sync_api import expect

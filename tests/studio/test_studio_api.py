@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 import pytest
-from asking import Client, problem, raw
+from asking import Client, awaited, problem, raw
 
 from simulearn.errors import CancelledError
 from simulearn.grid import Grid, grid_to_dict, lattice, make
@@ -281,7 +281,7 @@ def test_more_than_can_wait_is_refused(saddle, monkeypatch):
         gate.opened.set()
         return third, await asyncio.gather(*asked)
 
-    refused, answered = asyncio.run(ask())
+    refused, answered = awaited(ask())
     problem(refused, 429, "too-many")
     assert int(refused.headers["retry-after"]) >= 1
     assert [answer.status_code for answer in answered] == [200, 200]
@@ -300,7 +300,7 @@ def test_a_simulation_ends_when_its_client_has_gone(saddle, monkeypatch):
         return {"type": "http.disconnect"}
 
     headers = {"content-type": "application/json"}
-    asyncio.run(raw(client.app, "POST", "/api/simulate", [sent, leave], headers))
+    awaited(raw(client.app, "POST", "/api/simulate", [sent, leave], headers))
     assert gate.cancelled.wait(10)
 
 
@@ -310,7 +310,7 @@ def test_a_client_that_leaves_while_it_sends_is_no_mistake(client, caplog):
         {"type": "http.disconnect"},
     ]
     headers = {"content-type": "application/json"}
-    assert asyncio.run(raw(client.app, "POST", "/api/simulate", received, headers)) == []
+    assert awaited(raw(client.app, "POST", "/api/simulate", received, headers)) == []
     assert caplog.text == ""
 
 

@@ -1,11 +1,10 @@
 """What keeps foreign pages and endless requests away from the studio."""
 
-import asyncio
 import json
 import re
 
 import pytest
-from asking import Client, problem, raw
+from asking import Client, awaited, problem, raw
 
 from simulearn.studio.safety import HEADERS
 from simulearn.studio.settings import Settings
@@ -150,7 +149,7 @@ def test_files_may_be_larger_than_other_bodies():
 )  # fmt: skip
 def test_only_files_of_the_page_are_served(client, path):
     plain = re.sub("%(..)", lambda found: chr(int(found[1], 16)), path)
-    events = asyncio.run(raw(client.app, "GET", plain, [{"type": "http.request"}]))
+    events = awaited(raw(client.app, "GET", plain, [{"type": "http.request"}]))
     assert events[0]["status"] == 404
     assert json.loads(events[1]["body"])["code"] == "not-found"
 
