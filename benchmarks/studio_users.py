@@ -38,7 +38,8 @@ async def user(client: httpx.AsyncClient, number: int, until: float, spent: Spen
         answer = await client.request(method, path, json=body, headers=headers)
         spent[what].append(time.perf_counter() - begun)
         if answer.is_error:
-            spent[f"error {answer.status_code}: {what}"].append(1)
+            code = answer.json().get("code", "")
+            spent[f"error {answer.status_code} {code}: {what}"].append(1)
         return answer
 
     await ask("page", "GET", "/")
@@ -59,7 +60,8 @@ async def user(client: httpx.AsyncClient, number: int, until: float, spent: Spen
             revision = saved.json().get("revision", revision)
         if step % 20 == 7:
             goal = {"vertex": ["joint", (grid["fixed"] + 1) % 9, "centre"], "target": [50, 50, 10]}
-            task = {"schema": "simulearn.task/1", "grid": grid, "goals": [goal]}
+            # A design that was moved may not be valid any more; that would be a fault of the user.
+            task = {"schema": "simulearn.task/1", "grid": grid_to_dict(design), "goals": [goal]}
             await ask("rank", "POST", "/api/rank", task)
         if step % 60 == 30:
             await check(ask, grid)
