@@ -13,6 +13,7 @@ from simulearn.errors import InputError
 from simulearn.grid.arrays import shown
 from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
 from simulearn.material.material import is_name
+from simulearn.studio.problems import place_of
 
 SCHEMA = "simulearn.document/1"
 MOST_GOALS = 1000
@@ -119,7 +120,7 @@ def is_vertex(vertex: list[Any], joints: int, beams: int) -> bool:
 def _wrong(error: ValidationError) -> InputError:
     """Return the first of pydantic's errors in our words."""
     first = error.errors(include_url=False)[0]
-    where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in first["loc"]).lstrip(".")
+    where = place_of(first["loc"])
     if first["type"] == "missing":
         text = f"{where} is missing"
     elif first["type"] == "extra_forbidden":

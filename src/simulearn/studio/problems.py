@@ -2,7 +2,7 @@
 
 import json
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from http import HTTPStatus
 from typing import Any
@@ -189,11 +189,15 @@ def _invalid(error: RequestValidationError) -> Problem:
     return Problem(422, first.code, first.message + more, first.where, messages)
 
 
+def place_of(keys: Iterable[str | int]) -> str:
+    """Return a path of keys and indices in words, as `grid.joints[2]`."""
+    return "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")
+
+
 def _message(error: Any) -> Message:
     """Return one of pydantic's errors in our words."""
     source, *keys = error["loc"]
-    where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")
-    where = where or str(source)
+    where = place_of(keys) or str(source)
     if error["type"] == "missing":
         text = f"{where} is missing"
     elif error["type"] == "extra_forbidden":

@@ -25,11 +25,6 @@ export function partsInBox(grid, [a, b]) {
   };
 }
 
-/** Return whether two parts are the same, or both none. */
-export function samePart(a, b) {
-  return a?.joint === b?.joint && a?.beam === b?.beam;
-}
-
 /** Return whether a part is in a selection. */
 export function isSelected(selection, part) {
   if (!part) return false;

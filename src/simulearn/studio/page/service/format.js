@@ -28,9 +28,6 @@ export function distance(value) {
 /** Return a distance in mm: "0.42 mm", "12.3 mm", "140 mm". */
 export const mm = (value) => `${distance(value)} mm`;
 
-/** Return a change of a distance with its sign: "+0.42 mm", "−12.3 mm". */
-export const signedMm = (value) => `${value > 0 ? "+" : ""}${mm(value)}`;
-
 /** Return a short time: "5 ms", "1.4 s", "32 s". */
 export function seconds(value) {
   if (value < 1) return `${number(1000 * value)} ms`;
