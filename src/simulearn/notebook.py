@@ -1,0 +1,1 @@
+"""How grids and results show themselves in a notebook."""
