@@ -106,7 +106,12 @@ const Notice = {
   },
 };
 
+/** It floats, and goes while people work: what they aim at must not move then. */
+const preparing = () => h("div", { class: "notice", key: "preparing" }, [h("p", t("common.preparing"))]);
+
 export const Notices = {
-  render: () => h("div", { class: "notices", role: "status" },
-    state.notices.map((notice) => h(Notice, { key: notice.id, notice }))),
+  render: () => h("div", { class: "notices", role: "status" }, [
+    state.server && !state.server.ready && preparing(),
+    ...state.notices.map((notice) => h(Notice, { key: notice.id, notice })),
+  ]),
 };
