@@ -1,4 +1,4 @@
-"""Files that a person opens: a grid, task, result or document of ours, or a drawing of another program.
+"""Files that a person opens: grids, tasks, results and documents of ours, drawings of other programs.
 
 All are known by what they hold, not by their names.
 """

@@ -59,10 +59,16 @@ function documentOf({ grid, goals = [], name, printer, drawing }) {
   return readDocument({ schema, name, grid: { ...grid, material }, goals, printer: by });
 }
 
-function refuse(file, problem, options) {
+/** Say why a file cannot be opened, or ask for what is missing to open it. */
+export function refuse(file, problem, options) {
   const { code, message, errors = [] } = problem;
+  const ask = { reason: message, choose: (choice) => open(file, { ...options, ...choice }) };
   if (code === "unit-unknown") {
-    state.dialog = { name: "unit", problem, choose: (choice) => open(file, { ...options, ...choice }) };
+    state.dialog = { name: "unit", file: file.name, size: problem.size, guess: problem.guess, ...ask };
+    return;
+  }
+  if (code === "curves-only") {
+    state.dialog = { name: "curves", file: file.name, ...ask };
     return;
   }
   const title = t("common.openFailed", { file: file.name });

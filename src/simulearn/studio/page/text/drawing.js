@@ -9,7 +9,7 @@ export const drawing = {
     // Unit
     unitTitle: "How large is {file}?",
     unitAsk: "Choose the size that is meant.",
-    unitLikely: "likely: {why}",
+    unitLikely: "likely",
     unitNow: "now",
     unit: "Unit",
     unit_mm: "Millimetres", unit_cm: "Centimetres", unit_m: "Metres", unit_um: "Micrometres",
@@ -28,6 +28,7 @@ export const drawing = {
     by_none: "None",
     // Curves
     curves: "Curves",
+    curvesTitle: "{file} has only curves",
     flatten: "Make straight pieces of curves",
     flattenBy: "At most off by",
     // Mends
@@ -61,7 +62,7 @@ export const drawing = {
     // Unit
     unitTitle: "Wie groß ist {file}?",
     unitAsk: "Die gemeinte Größe wählen.",
-    unitLikely: "wahrscheinlich: {why}",
+    unitLikely: "wahrscheinlich",
     unitNow: "jetzt",
     unit: "Einheit",
     unit_mm: "Millimeter", unit_cm: "Zentimeter", unit_m: "Meter", unit_um: "Mikrometer",
@@ -80,6 +81,7 @@ export const drawing = {
     by_none: "Keine",
     // Curves
     curves: "Kurven",
+    curvesTitle: "{file} hat nur Kurven",
     flatten: "Gerade Stücke aus Kurven machen",
     flattenBy: "Höchste Abweichung",
     // Mends
