@@ -15,7 +15,7 @@ from playwright.sync_api import expect
 
 import synthetic
 from simulearn.errors import InputError, Message
-from simulearn.grid import read_grid
+from simulearn.grid import grid_from_dict, make, read_grid, write_grid
 from simulearn.interop import write_html
 from simulearn.interop.bundle import Bundle
 from simulearn.interop.html import OWN, STUDIO, page
@@ -24,6 +24,8 @@ from simulearn.interop.libraries import libraries
 from simulearn.material import Identity
 from simulearn.schedule import Snap
 from simulearn.simulate import FRAMES
+from simulearn.studio.exports import exported
+from simulearn.studio.opening import opened as opened_by_studio
 
 ODD = "</title><script>document.title='run'</script>&\"'<b>"
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
@@ -224,7 +226,7 @@ def test_missing_package_is_told(result, tmp_path, monkeypatch):
 
 def test_result_is_read_back(result):
     given = qualified(result)
-    read = result_of_html(page(given, ODD))
+    read = result_of_html(page(given, ODD).encode())
     assert read.grid.digest == given.grid.digest
     assert (read.stable, read.bound_mm, read.snaps) == (False, 0.31, given.snaps)
     assert (read.warnings, read.material, read.model) == (
@@ -235,10 +237,35 @@ def test_result_is_read_back(result):
     assert read.joints.shape[0] == FRAMES
 
 
+def test_design_is_imported_from_a_page(run, file, result, tmp_path):
+    code, _, _ = run("import", file, "-o", tmp_path / "grid.json")
+    assert code == 0
+    assert read_grid(tmp_path / "grid.json").digest == result.grid.digest
+
+
+def test_studio_opens_a_page(file, result):
+    parts = opened_by_studio(file.read_bytes(), file.name)
+    assert (parts["kind"], parts["name"]) == ("result", "my saddle")
+    assert grid_from_dict(parts["grid"]).digest == result.grid.digest
+
+
+def test_command_writes_a_page(run, tmp_path):
+    write_grid(make("saddle", (1, 1)), tmp_path / "grid.json")
+    output = tmp_path / "shape.html"
+    assert run("simulate", tmp_path / "grid.json", "--engine", "learned", "-o", output)[0] == 0
+    assert result_of_html(output.read_bytes()).engine == "learned"
+
+
+def test_studio_exports_a_page_with_the_design_as_its_title(result):
+    data, name, kind = exported(result, ".html", "my-saddle")
+    assert (name, kind) == ("my-saddle.html", "text/html; charset=utf-8")
+    assert b"<title>my-saddle</title>" in data
+
+
 @pytest.mark.parametrize("text", ["", "<html></html>", "{}", "<script id='simulearn-result'>"])
 def test_other_pages_are_refused(text):
     with pytest.raises(InputError, match="not a page with a result"):
-        result_of_html(text)
+        result_of_html(text.encode())
 
 
 def test_broken_pages_are_refused(result):
@@ -254,7 +281,7 @@ def test_broken_pages_are_refused(result):
         if rng.random() < 0.3:
             broken = broken[: rng.randrange(begin, len(text))]
         try:
-            result_of_html("".join(broken))
+            result_of_html("".join(broken).encode())
         except InputError as error:
             refused += "\n" not in str(error)
     assert time.monotonic() - begun < 60
@@ -264,7 +291,7 @@ def test_broken_pages_are_refused(result):
 def test_frames_that_would_fill_the_memory_are_refused(result, monkeypatch):
     monkeypatch.setattr("simulearn.interop.html_reading.MOST_BYTES", 1000)
     with pytest.raises(InputError):
-        result_of_html(page(result))
+        result_of_html(page(result).encode())
 
 
 def test_numbers_of_another_shape_are_refused(result):
@@ -272,7 +299,7 @@ def test_numbers_of_another_shape_are_refused(result):
     grid = json.loads(re.search(r'simulearn-result">([^<]*)<', text)[1])["grid"]
     fewer = {**grid, "joints": [*grid["joints"], [500.0, 500.0]]}
     with pytest.raises(InputError, match="shape"):
-        result_of_html(text.replace(json.dumps(grid), json.dumps(fewer)))
+        result_of_html(text.replace(json.dumps(grid), json.dumps(fewer)).encode())
 
 
 class TestBundle:

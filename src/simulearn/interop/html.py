@@ -18,6 +18,7 @@ from string import Template
 import numpy as np
 
 from simulearn import __version__
+from simulearn.drawings.pages import SCHEMA as PAGE
 from simulearn.files import replacing
 from simulearn.grid import grid_to_dict
 from simulearn.interop import frames
@@ -28,7 +29,7 @@ from simulearn.interop.png import png
 from simulearn.show import deformed
 from simulearn.show.deformed import dimensions
 from simulearn.simulate import Result
-from simulearn.simulate.resultfile import SCHEMA, qualities
+from simulearn.simulate.resultfile import qualities
 
 OWN = Path(__file__).parent / "page"
 STUDIO = Path(__file__).parents[1] / "studio" / "page"  # read as data, not imported
@@ -65,7 +66,7 @@ def page(result: Result, title: str = "Shape") -> str:
     style = "\n".join(path.read_text("utf-8") for path in STYLES)
     picture, width, height = png(deformed(result))
     contents = {
-        "schema": SCHEMA,
+        "schema": PAGE,
         "grid": grid_to_dict(result.grid),
         "engine": result.engine,
         "seconds": round(float(result.seconds), 3),

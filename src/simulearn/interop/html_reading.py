@@ -7,32 +7,32 @@ from base64 import b64decode
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.drawings.pages import page_contents
 from simulearn.errors import InputError
 from simulearn.files import parse_json
 from simulearn.interop import frames
 from simulearn.simulate import Result, result_from_dict
+from simulearn.simulate.resultfile import SCHEMA as RESULT
 
 MOST_BYTES = 2**28  # of the unpacked frames
-ELEMENT = r'<script type="{}" id="{}">([^<]*)</script>'
-RESULT = re.compile(ELEMENT.format("application/json", "simulearn-result"))
-FRAMES = re.compile(ELEMENT.format("text/plain", "simulearn-frames"))
+FRAMES = re.compile(rb'<script type="text/plain" id="simulearn-frames">([^<]*)</script>')
 
 
-def result_of_html(text: str, *, paths: bool = False) -> Result:
+def result_of_html(data: bytes, *, paths: bool = False) -> Result:
     """Return the result that a page shows; corners to 0.0005 mm, without stresses and solid.
 
     Args:
-        text: of the page.
+        data: contents of the file.
         paths: whether the grid's material may be the path of a file; if not, it must be a name.
 
     Raises:
-        InputError: the text is not a page made by SimuLearn, or is damaged.
+        InputError: the file is not a page made by SimuLearn, or is damaged.
     """
-    result, packed = RESULT.search(text), FRAMES.search(text)
-    if result is None or packed is None:
+    text, packed = page_contents(data), FRAMES.search(data)
+    if text is None or packed is None:
         raise InputError("is not a page with a result of SimuLearn", "html-other")
     try:
-        contents = parse_json(result[1])
+        contents = parse_json(text)
         arrays = _arrays(packed[1])
     except InputError:
         raise
@@ -40,10 +40,10 @@ def result_of_html(text: str, *, paths: bool = False) -> Result:
         raise InputError("the page is damaged: its frames cannot be read", "html") from error
     if not isinstance(contents, dict):
         raise InputError("the page is damaged: its result is not an object", "html")
-    return result_from_dict({**contents, **arrays}, paths=paths)
+    return result_from_dict({**contents, **arrays, "schema": RESULT}, paths=paths)
 
 
-def _arrays(packed: str) -> dict[str, NDArray[np.float32]]:
+def _arrays(packed: bytes) -> dict[str, NDArray[np.float32]]:
     """Return the corners of joints and beams from the packed message of frames."""
     unpacking = zlib.decompressobj(16 + zlib.MAX_WBITS)  # gzip
     message = unpacking.decompress(b64decode(packed, validate=True), MOST_BYTES)
