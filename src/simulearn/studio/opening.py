@@ -1,4 +1,4 @@
-"""Files that a person opens: grids, tasks, results and documents of ours, drawings of other programs.
+"""Files that a person opens: grids, tasks, results, pages, documents, and drawings of others.
 
 All are known by what they hold, not by their names.
 """
@@ -34,16 +34,8 @@ MARKS = {  # of text that is not UTF-8 (or marked as such)
 LOOK = 2**12  # bytes in which JSON begins
 OWN = "simulearn."  # the beginning of our schemas
 OPENED = "the studio opens grids, tasks, results, documents and drawings"
-ENDINGS = (
-    ".json",
-    ".dxf",
-    ".svg",
-    ".3dm",
-    ".csv",
-    ".txt",
-    ".obj",
-    ".html",
-)  # left out of a design's name
+# What is left out of a design's name.
+ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj", ".html")
 # What a search begins from may not have; it is no error in a drawing.
 REMOVABLE = ("dangling-beam", "unused-joint")
 
