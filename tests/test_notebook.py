@@ -170,6 +170,33 @@ def test_importing_changes_nothing_and_plans_need_no_matplotlib():
     subprocess.run([sys.executable, "-W", "error", "-c", HOST], check=True)
 
 
+# What VS Code lets the outputs of a notebook do; a frame's policy is this one and its own.
+POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
+    "img-src https: http: data:; font-src https:; connect-src https:; child-src https: data:"
+)
+
+
+def test_page_plays_under_the_policy_of_its_host_and_one_frame_does_not_end_another(
+    tmp_path, visit, result
+):
+    count = 20  # more canvases than a browser keeps
+    file = tmp_path / "host.html"
+    meta = f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
+    body = count * bundle(result)["text/html"]
+    file.write_text(f"<!doctype html>{meta}<title>Host</title>{body}", "utf-8")
+    tab = visit(offline=True)
+    tab.goto(file.as_uri())
+    for k in [*range(count), 0]:
+        frame = tab.locator("iframe").nth(k)
+        frame.scroll_into_view_if_needed()
+        inside = frame.content_frame
+        inside.locator(".shape-canvas canvas").wait_for()
+        assert inside.get_by_role("alert").count() == 0
+    inside.get_by_role("slider").press("Home")
+    assert inside.get_by_role("slider").input_value() == "0"
+
+
 CELLS = (
     "import sys\nimport simulearn\ngrid = simulearn.make('saddle')\ngrid",
     "assert 'matplotlib' not in sys.modules\n"

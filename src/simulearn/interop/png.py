@@ -7,7 +7,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 DPI = 110
-COLOURS = 64  # that the pictures of grids need
+COLOURS = 256
 
 
 def png(figure: "Figure") -> tuple[bytes, int, int]:
@@ -21,6 +21,6 @@ def png(figure: "Figure") -> tuple[bytes, int, int]:
     drawn, content = BytesIO(), BytesIO()
     figure.savefig(drawn, format="png", dpi=DPI)
     with Image.open(drawn) as image:
-        few = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
+        few = image.convert("RGB").quantize(COLOURS, Image.Quantize.MAXCOVERAGE)
     few.save(content, "png", optimize=True)
     return content.getvalue(), *few.size
