@@ -13,7 +13,6 @@ from simulearn.grid import Grid
 from simulearn.studio.hops.curves import curve_of
 from simulearn.studio.hops.parameters import CURVE, MOST, NUMBER, POINT, Input
 from simulearn.studio.hops.placement import Placement, placement_of, unit_of
-from simulearn.studio.hops.schemas import Item
 from simulearn.studio.hops.values import Inputs
 from simulearn.studio.routes.designs import check_size
 from simulearn.studio.settings import Settings
@@ -119,6 +118,9 @@ def design_of(
 ) -> Design:
     """Return the grid that the curves of a request show.
 
+    Each curve goes on the layer that stands for its ratio. So the mends, which know the line that a
+    beam comes from, give each beam its ratio.
+
     Args:
         inputs: curves, ratios and the fixed point.
         modelunits: name of the model's unit in Rhino.
@@ -128,11 +130,37 @@ def design_of(
     Raises:
         InputError: the curves, ratios or the fixed point are wrong, or show no grid.
     """
+    lines: list[Line | Curve] = []
+    ratios = _ratios(inputs)
+    for k, (item, ratio) in enumerate(zip(inputs.items[CURVES.name], ratios, strict=True)):
+        line = curve_of(item, f"Curves[{k}]")
+        lines.append(replace(line, layer=layer_of(ratio)) if isinstance(line, Line) else line)
+    return design_from(lines, inputs.points(FIXED.name), modelunits, settings, loud)
+
+
+def design_from(
+    lines: Sequence[Line | Curve],
+    fixed: Points,
+    modelunits: str | None,
+    settings: Settings,
+    loud: bool = False,
+) -> Design:
+    """Return the grid that lines in a model show, with actuators by the names of their layers.
+
+    Args:
+        lines: in the model's unit.
+        fixed: (0 or 1, 3) a point at the joint that is held.
+        modelunits: name of the model's unit in Rhino.
+        settings: how large a grid may be.
+        loud: whether a conversion of units is a warning.
+
+    Raises:
+        InputError: the lines show no grid, or one that is too large.
+    """
     unit, told = unit_of(modelunits)
-    lines = _lines(inputs.items.get(CURVES.name, ()), _ratios(inputs))
     straight = [line for line in lines if isinstance(line, Line)]
     placement, plane = placement_of(_all_points(straight or lines, unit.mm), unit)
-    drawing = Drawing("Grasshopper", [], unit=unit, plain=bool(told))
+    drawing = Drawing("Rhino", [], unit=unit, plain=bool(told))
     for line in lines:
         if isinstance(line, Line):
             drawing.lines.append(replace(line, points=_level(placement, line.points)))
@@ -140,15 +168,13 @@ def design_of(
             drawing.curves.append(line)
     found = grid_of(drawing, Options(actuators="layers"))
     check_size(found.grid, settings)
-    grid, moved = _held(found.grid, inputs.points(FIXED.name), placement)
+    grid, moved = _held(found.grid, fixed, placement)
     design = Design(grid, placement)
-    messages = [*told, *plane, *moved]
-    messages += [one for one in found.messages if one.code != ASKED]
     usual = QUIET if unit.mm == 1.0 or not loud else QUIET[:1]
-    for one in messages:
+    for one in (*told, *plane, *moved, *found.messages):
+        if one.code == ASKED or (one.code == "fixed" and len(fixed)):
+            continue
         quiet = one.code in usual and one not in told
-        if one.code == "fixed" and inputs.has(FIXED.name):
-            continue  # it says where it would be
         design.remarks.append(Remark(one.message, design.place(one.where), quiet))
     for mend in found.mends:
         places = mend.places[:MOST_PLACES] or (design.place("grid"),)
@@ -175,19 +201,8 @@ def _ratios(inputs: Inputs) -> list[float]:
     return ratios
 
 
-def _lines(items: Sequence[Item], ratios: list[float]) -> list[Line | Curve]:
-    """Return the curves as lines of a drawing, each on the layer that stands for its ratio.
-
-    So the mends, which know the line that a beam comes from, give each beam its ratio.
-    """
-    found = []
-    for k, (item, ratio) in enumerate(zip(items, ratios, strict=True)):
-        line = curve_of(item, f"Curves[{k}]")
-        found.append(replace(line, layer=_layer(ratio)))
-    return found
-
-
-def _layer(ratio: float) -> str:
+def layer_of(ratio: float) -> str:
+    """Return the name of the layer that stands for a ratio."""
     rounded = round(abs(ratio) * STEPS) / STEPS
     return f"{'top' if ratio > 0 else 'bottom'} {rounded:.6f}" if rounded else "passive"
 
