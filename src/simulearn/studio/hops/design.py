@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from simulearn.studio.settings import Settings
 Points = NDArray[np.float64]
 
 ASKED = "actuators"  # code of the message that says which ratios were given
-QUIET = ("fixed", "unit")  # what is usual: it belongs in no balloon
+QUIET = ("fixed", "unit", ASKED)  # what is usual: it belongs in no balloon
 STEPS = 1e6  # of a ratio of 1; a layer's name holds no more
 FAR = 3.6  # mm, half the width of a beam: nearer is at the joint
 MOST_PLACES = 100  # of one mend that are told
@@ -50,10 +51,18 @@ DRAWN = (CURVES, ACTUATORS, FIXED)
 
 @dataclass(frozen=True, eq=False)
 class Remark:
-    """Something to be told, where in the grid (mm; its middle if nowhere else), and how loud."""
+    """Something to be told.
+
+    Attributes:
+        text: for people.
+        place: where in the grid, mm; its middle if nowhere else.
+        code: for programs.
+        quiet: whether it is usual, and belongs in no balloon.
+    """
 
     text: str
     place: tuple[float, float]
+    code: str = ""
     quiet: bool = False
 
 
@@ -135,7 +144,10 @@ def design_of(
     for k, (item, ratio) in enumerate(zip(inputs.items[CURVES.name], ratios, strict=True)):
         line = curve_of(item, f"Curves[{k}]")
         lines.append(replace(line, layer=layer_of(ratio)) if isinstance(line, Line) else line)
-    return design_from(lines, inputs.points(FIXED.name), modelunits, settings, loud)
+    design = design_from(lines, inputs.points(FIXED.name), modelunits, settings, loud, "layers")
+    # The layers are not the person's own.
+    design.remarks[:] = [one for one in design.remarks if one.code != ASKED]
+    return design
 
 
 def design_from(
@@ -144,8 +156,9 @@ def design_from(
     modelunits: str | None,
     settings: Settings,
     loud: bool = False,
+    actuators: Literal["auto", "layers"] = "auto",
 ) -> Design:
-    """Return the grid that lines in a model show, with actuators by the names of their layers.
+    """Return the grid that lines in a model show.
 
     Args:
         lines: in the model's unit.
@@ -153,6 +166,7 @@ def design_from(
         modelunits: name of the model's unit in Rhino.
         settings: how large a grid may be.
         loud: whether a conversion of units is a warning.
+        actuators: what says their ratios; layers where one's name does, else colours ("auto").
 
     Raises:
         InputError: the lines show no grid, or one that is too large.
@@ -166,19 +180,19 @@ def design_from(
             drawing.lines.append(replace(line, points=_level(placement, line.points)))
         else:
             drawing.curves.append(line)
-    found = grid_of(drawing, Options(actuators="layers"))
+    found = grid_of(drawing, Options(actuators=actuators))
     check_size(found.grid, settings)
     grid, moved = _held(found.grid, fixed, placement)
     design = Design(grid, placement)
-    usual = QUIET if unit.mm == 1.0 or not loud else QUIET[:1]
+    usual = {*QUIET} - ({"unit"} if loud and unit.mm != 1.0 else set())
     for one in (*told, *plane, *moved, *found.messages):
-        if one.code == ASKED or (one.code == "fixed" and len(fixed)):
+        if one.code == "fixed" and len(fixed):
             continue
         quiet = one.code in usual and one not in told
-        design.remarks.append(Remark(one.message, design.place(one.where), quiet))
+        design.remarks.append(Remark(one.message, design.place(one.where), one.code, quiet))
     for mend in found.mends:
         places = mend.places[:MOST_PLACES] or (design.place("grid"),)
-        design.remarks.extend(Remark(mend.message, place) for place in places)
+        design.remarks.extend(Remark(mend.message, place, mend.code) for place in places)
     return design
 
 
