@@ -37,9 +37,10 @@ export function allMends(before, found, without) {
   return [...kept, ...now.values()];
 }
 
-/** Return the names of the layers that are read once one of them is taken or not. */
-export function layersAfter(layers, name, taken) {
-  return layers.filter((layer) => (layer.name === name ? taken : layer.taken)).map((layer) => layer.name);
+/** Return a list with an entry, or without it. */
+export function withEntry(list, entry, on) {
+  const others = list.filter((one) => one !== entry);
+  return on ? [...others, entry] : others;
 }
 
 /** Return a pattern that fits a name and nothing else: * ? and [ stand for themselves. */
