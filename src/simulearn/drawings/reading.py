@@ -23,7 +23,4 @@ def own_grid(data: bytes) -> Grid | None:
 
 def read_drawing(data: bytes, name: str) -> Drawing:
     """Return what a drawing holds."""
-    if b"<svg" in data[:4000]:
-        from simulearn.drawings.svg import read_svg
-        return read_svg(data)
     return read_json_lines(parse_json(data.decode("utf-8-sig")))
