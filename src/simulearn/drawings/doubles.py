@@ -110,7 +110,7 @@ def _fitted(ends: Numbers, group: Indices) -> tuple[Numbers, Numbers]:
     length = np.hypot(*along.T)
 
     def total(values: Numbers) -> Numbers:
-        return np.bincount(group, values, count)
+        return np.asarray(np.bincount(group, values, count), np.float64)
 
     weight = total(length)
     middle = ends.mean(axis=1)

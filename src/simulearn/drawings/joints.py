@@ -51,7 +51,7 @@ def _crossings(ends: Numbers, at: Stations, tolerance: float) -> Numbers:
     count = int(at.node.max()) + 1
 
     def total(values: Numbers) -> Numbers:
-        return np.bincount(at.node, values, count)
+        return np.asarray(np.bincount(at.node, values, count), np.float64)
 
     vector = ends[:, 1] - ends[:, 0]
     length = np.hypot(*vector.T)

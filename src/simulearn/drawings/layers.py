@@ -53,7 +53,8 @@ def layers_of(drawing: Drawing, patterns: Sequence[str]) -> list[LayerUse]:
         InputError: a pattern fits no layer.
     """
     colours: dict[str, Counter[str | None]] = {}
-    for thing in (*drawing.lines, *drawing.curves):
+    things: list[Line | Curve] = [*drawing.lines, *drawing.curves]
+    for thing in things:
         colours.setdefault(thing.layer, Counter())[thing.colour] += 1
     for pattern in patterns:
         if not any(_fits(name, pattern) for name in colours):

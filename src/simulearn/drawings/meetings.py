@@ -60,20 +60,21 @@ def stations(
     length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     reach = EXACT * tolerance if "gap" in without else tolerance
     trim = EXACT * tolerance if "overshoot" in without else tolerance
-    a, s, b, t = _meetings(ends, length, pairs, reach)
-    through = [(trim < x) & (x < length[k] - trim) for k, x in ((a, s), (b, t))]
-    keep = np.ones(len(a), bool)
+    run, place = _meetings(ends, length, pairs, reach)
+    through = (trim < place) & (place < length[run] - trim)
+    keep = np.ones(run.shape[1], bool)
     if "crossing" in without:
-        keep &= ~(through[0] & through[1])
+        keep &= ~through.all(axis=0)
     if "t-touch" in without:
         keep &= through[0] == through[1]
-    a, s, b, t = (x[keep] for x in (a, s, b, t))
+    run, place = run[:, keep], place[:, keep]
     # Each run has a place at its start and one at its end, then those where it meets another.
-    runs, meets = len(ends), np.arange(len(a)) + 2 * len(ends)
-    run = np.concatenate([np.arange(runs), np.arange(runs), a, b])
-    place = np.concatenate([np.zeros(runs), length, s, t])
-    label = np.concatenate([np.arange(2 * runs), meets, meets])
-    return _joined(run, place, label, runs, tolerance, trim)
+    runs = np.arange(len(ends))
+    meeting = np.arange(run.shape[1]) + 2 * len(ends)
+    run = np.concatenate([runs, runs, *run])
+    place = np.concatenate([np.zeros(len(ends)), length, *place])
+    label = np.concatenate([runs, runs + len(ends), meeting, meeting])
+    return _joined(run, place, label, len(ends), tolerance, trim)
 
 
 def _joined(
@@ -131,29 +132,27 @@ def merged(run: Indices, node: Indices, place: Numbers, start: Mask, end: Mask) 
 
 def _meetings(
     ends: Numbers, length: Numbers, pairs: tuple[Indices, Indices], reach: float
-) -> tuple[Indices, Numbers, Indices, Numbers]:
-    """Return where runs meet: run, place along it, other run, place along that."""
+) -> tuple[Indices, Numbers]:
+    """Return where runs meet: the two runs (2, M), and the places along them (2, M) mm."""
     a, b = pairs
     along = (ends[:, 1] - ends[:, 0]) / length[:, None]
     apart = ends[b, 0] - ends[a, 0]
     turn = cross(along[a], along[b])
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        s, t = cross(apart, along[b]) / turn, cross(apart, along[a]) / turn
-        meet = (turn != 0) & (s >= -reach) & (t >= -reach)
-        meet &= (s <= length[a] + reach) & (t <= length[b] + reach)
-    found = [(a[meet], s[meet], b[meet], t[meet])]
+        place = np.stack([cross(apart, along[b]), cross(apart, along[a])]) / turn
+        run = np.stack([a, b])
+        meet = (turn != 0) & ((place >= -reach) & (place <= length[run] + reach)).all(axis=0)
+    runs, places = [run[:, meet]], [place[:, meet]]
     # Those whose axes cross elsewhere meet where an end of one lies on the other.
-    rest_a, rest_b = a[~meet], b[~meet]
-    for one, other in ((rest_a, rest_b), (rest_b, rest_a)):
+    for one, other in (run[:, ~meet], run[::-1, ~meet]):
         for end in (0, 1):
             point = ends[one, end]
-            place = ((point - ends[other, 0]) * along[other]).sum(axis=1)
-            place = np.clip(place, 0, length[other])
-            on = ends[other, 0] + place[:, None] * along[other]
-            near = np.hypot(*(point - on).T) <= reach
-            at = np.where(end, length[one], 0.0)
-            found.append((one[near], at[near], other[near], place[near]))
-    return tuple(np.concatenate(parts) for parts in zip(*found, strict=True))  # type: ignore[return-value]
+            at = ((point - ends[other, 0]) * along[other]).sum(axis=1)
+            at = np.clip(at, 0, length[other])
+            near = np.hypot(*(point - ends[other, 0] - at[:, None] * along[other]).T) <= reach
+            runs.append(np.stack([one, other])[:, near])
+            places.append(np.stack([np.where(end, length[one], 0.0), at])[:, near])
+    return np.concatenate(runs, axis=1), np.concatenate(places, axis=1)
 
 
 def cross(a: Numbers, b: Numbers) -> Numbers:

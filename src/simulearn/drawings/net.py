@@ -1,6 +1,7 @@
 """Joints and the beams between them, before they are a grid; what dangles and what is needless."""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,7 +116,7 @@ def without_needless(net: Net, tolerance: float) -> tuple[Net, Numbers]:
         stay = simplified(net.joints[chain], STRAIGHT * tolerance)
         corners = np.flatnonzero(stay).tolist()
         gone[np.array(chain)[~stay]] = True
-        for begin, end in zip(corners[:-1], corners[1:], strict=True):
+        for begin, end in pairwise(corners):
             if end - begin > 1:
                 parts = along[begin:end]
                 drop[parts[1:]] = True

@@ -1,4 +1,4 @@
-"""The length of a drawing's unit: what a person says, else what the file says, if it makes sense."""
+"""The unit of a drawing: what a person says, else what the file says, where it makes sense."""
 
 from dataclasses import dataclass
 
@@ -83,4 +83,7 @@ def _as_guessed(guess: Unit | None, size: Size) -> str:
     if guess is None:
         return "no unit makes sense of it: say how wide it is"
     width, height = guess.mm * size.width, guess.mm * size.height
-    return f"likely it is in {guess.name}, {width:.4g} x {height:.4g} mm ({guess.source})"
+    return (
+        f'the likely unit is "{guess.name}", with which it is {width:.4g} x {height:.4g} mm '
+        f"({guess.source})"
+    )

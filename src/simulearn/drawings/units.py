@@ -6,22 +6,38 @@ from simulearn.drawings.drawing import Unit
 from simulearn.errors import InputError
 
 INCH = 25.4
-# Names of units and their lengths in mm; the first name of a length is the one that is told.
+# Lengths of units in mm, and their other names.
 LENGTHS = {
-    "mm": (1.0, "millimeter", "millimetre"),
-    "cm": (10.0, "centimeter", "centimetre"),
-    "dm": (100.0, "decimeter", "decimetre"),
-    "m": (1000.0, "meter", "metre"),
-    "km": (1e6, "kilometer", "kilometre"),
-    "um": (0.001, "µm", "μm", "micron", "micrometer", "micrometre"),
-    "nm": (1e-6, "nanometer", "nanometre"),
-    "in": (INCH, "inch", "inches", '"'),
-    "mil": (INCH / 1000, "thou"),
-    "ft": (12 * INCH, "foot", "feet", "'"),
-    "yd": (36 * INCH, "yard"),
-    "pt": (INCH / 72, "point"),
-    "pc": (INCH / 6, "pica"),
-    "px": (INCH / 96, "pixel"),
+    "mm": 1.0,
+    "cm": 10.0,
+    "dm": 100.0,
+    "m": 1000.0,
+    "km": 1e6,
+    "um": 1e-3,
+    "nm": 1e-6,
+    "in": INCH,
+    "mil": INCH / 1000,
+    "ft": 12 * INCH,
+    "yd": 36 * INCH,
+    "pt": INCH / 72,
+    "pc": INCH / 6,
+    "px": INCH / 96,
+}
+NAMES = {
+    "mm": ("millimeter", "millimetre"),
+    "cm": ("centimeter", "centimetre"),
+    "dm": ("decimeter", "decimetre"),
+    "m": ("meter", "metre"),
+    "km": ("kilometer", "kilometre"),
+    "um": ("µm", "μm", "micron", "micrometer", "micrometre"),
+    "nm": ("nanometer", "nanometre"),
+    "in": ("inch", "inche", '"'),
+    "mil": ("thou",),
+    "ft": ("foot", "feet", "'"),
+    "yd": ("yard",),
+    "pt": ("point",),
+    "pc": ("pica",),
+    "px": ("pixel",),
 }
 # Beams are usually this long; other lengths of the middle one are odd (mm).
 USUAL = (8.0, 400.0)
@@ -57,8 +73,8 @@ def unit_named(name: str, source: str) -> Unit:
         InputError: there is no such unit.
     """
     word = " ".join(name.split()).casefold()
-    for short, (mm, *others) in LENGTHS.items():
-        if word in {short, *others} or word.removesuffix("s") in {short, *others}:
+    for short, mm in LENGTHS.items():
+        if {word, word.removesuffix("s")} & {short, *NAMES[short]}:
             return Unit(mm, short, source)
     text = f'"{name[:40]}" is no unit of length; units are {", ".join(LENGTHS)}'
     raise InputError(text, "unit-name", "unit")
@@ -77,12 +93,12 @@ def guessed(beam: float) -> Unit | None:
     """
     best, least = None, inf
     for name in GUESSES:
-        mm = LENGTHS[name][0]
+        mm = LENGTHS[name]
         if LIKELY[0] <= mm * beam <= LIKELY[1]:
             far = abs(log(mm * beam / TYPICAL))
             if name == "mm":
                 far = -1.0
             if far < least:
-                source = f"beams of {beam:.4g} {name} are {mm * beam:.3g} mm long"
+                source = f"its beams are then {mm * beam:.3g} mm long"
                 best, least = Unit(mm, name, source), far
     return best
