@@ -3,12 +3,12 @@
 SIDE = 60.0  # mm
 DIAGONAL = SIDE * 2**0.5
 
-# The square's right side is drawn in two lines that miss each other by .4 mm and run .6 mm past the
-# corner; the diagonal ends on the joints; a beam dangles; a crumb; a hidden layer; text; a circle.
+# Of the square one line ends .3 mm short of a corner and one runs .6 mm past another. One line
+# dangles, one is a crumb. There are a text, a circle and a hidden layer, too.
 SHAPES = """
 <g inkscape:groupmode="layer" inkscape:label="frame" stroke="#888888" fill="none">
-  <path d="M 0,0 H 60 V 29.6"/>
-  <path d="M 60,30 V 60.6"/>
+  <path d="M 0,0 H 59.7"/>
+  <path d="M 60,0 V 60.6"/>
   <path d="M 60,60 H 0 V 0"/>
   <path d="M 0,60 v 40"/>
   <path d="M 20,20 h 0.2"/>
