@@ -29,9 +29,9 @@ export function allMends(before, found, without) {
   const now = new Map(found.map((mend) => [mend.code, { ...mend, done: true }]));
   const off = new Set(without);
   const kept = before.flatMap((mend) => {
-    if (off.has(mend.code)) return [{ ...mend, done: false }];
     const again = now.get(mend.code);
     now.delete(mend.code);
+    if (off.has(mend.code)) return [{ ...mend, done: false }];
     return again ? [again] : [];
   });
   return [...kept, ...now.values()];

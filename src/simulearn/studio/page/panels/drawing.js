@@ -81,8 +81,8 @@ function layer(drawing, { name, colour, lines, taken, ratio }) {
 
 function layersSection(drawing) {
   const { layers, options, messages } = drawing;
-  const told = messages.filter(({ code }) => code === "actuators");
-  if (layers.length === 0) return null;
+  const told = messages.filter(({ code, where }) => code === "actuators" && where === "colour");
+  if (layers.every(({ name }) => name === "") && told.length === 0 && !options.actuators) return null;
   return section(t("drawing.layers"), [
     h("ul", { class: "drawing-layers" }, layers.map((one) => layer(drawing, one))),
     h("label", { class: "printer" }, [
