@@ -8,6 +8,11 @@ from playwright.sync_api import expect
 
 import gestures as do
 
+RING = b"""
+<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="120mm" viewBox="0 0 120 120">
+  <circle cx="60" cy="60" r="55" fill="none" stroke="#000"/>
+</svg>
+"""
 DROP = """
 ([name, text]) => {
   const dataTransfer = new DataTransfer();
@@ -123,11 +128,7 @@ def test_what_no_drawing_is_says_so(page, studio, forgiven):
     told = page.get_by_role("dialog", name="part.stp cannot be opened")
     expect(told).to_contain_text("STEP")
     do.button(told, "Close").last.click()
-    ring = b'<svg xmlns="http://www.w3.org/2000/svg" width="120mm" height="120mm" '
-    ring += (
-        b'viewBox="0 0 120 120"><circle cx="60" cy="60" r="55" fill="none" stroke="#000"/></svg>'
-    )
-    drop(page, "ring.svg", ring)
+    drop(page, "ring.svg", RING)
     asked = page.get_by_role("dialog", name="ring.svg has only curves")
     asked.get_by_label("At most off by").fill("5")
     do.button(asked, "Make straight pieces of curves").click()

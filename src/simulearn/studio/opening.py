@@ -1,4 +1,4 @@
-"""Files that a person opens: grids, tasks, results and documents of ours, drawings of other programs.
+"""Files that a person opens: grids, tasks, results and documents of ours, and drawings of others.
 
 All are known by what they hold, not by their names.
 """

@@ -49,7 +49,7 @@ function head(drawing) {
       box && [t("drawing.size"), sizeWords([box.width, box.height])],
       [t("drawing.unit"), name],
     ]),
-    h("p", { class: "note" }, sentence(unit.source)),
+    h("p", { class: "note" }, unit.source), // in the words of the file
     h("div", { class: "row" }, [
       button(t("drawing.change"), () => askUnit(drawing)),
       button(t("drawing.done"), done, { kind: "primary" }),
