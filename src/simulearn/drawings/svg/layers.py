@@ -4,8 +4,11 @@ import re
 
 from simulearn.drawings.svg.tree import INKSCAPE, SERIF, Document, Element
 
-# Names that programs give to groups by themselves: "g1024", "Group 12", "<Group>".
-_AUTOMATIC = re.compile(r"(g|group|svg|path|use|surface|_?<?group>?_?)[-_ ]?\d*([-_]\d+)*", re.I)
+# Names that programs give to groups by themselves: "g1024", "Group 12", "<Group>", "axes_1".
+_AUTOMATIC = re.compile(
+    r"(g|group|svg|path|use|surface|figure|axes|line2d|patch|_?<?group>?_?)[-_ ]?\d*([-_]\d+)*",
+    re.I,
+)
 
 
 class Layers:
@@ -17,6 +20,7 @@ class Layers:
 
     def __init__(self, document: Document) -> None:
         self._root = document.root
+        self._names: dict[Element, str] = {}
         self._illustrator = any("Adobe Illustrator" in text for text in document.comments)
         groups = [element for element in document.elements if element.tag == "g"]
         self._inkscape = any(map(_is_inkscape_layer, groups))
@@ -24,6 +28,13 @@ class Layers:
 
     def name(self, group: Element) -> str:
         """Return the name of the layer that a group is, empty where it is none."""
+        if not group.attributes:
+            return ""
+        if group not in self._names:
+            self._names[group] = self._name(group)
+        return self._names[group]
+
+    def _name(self, group: Element) -> str:
         attributes = group.attributes
         name = attributes.get(f"{INKSCAPE} label", "")
         if _is_inkscape_layer(group):

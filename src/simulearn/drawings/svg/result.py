@@ -32,9 +32,13 @@ class Collected:
     ) -> None:
         """Add the runs of a shape, transformed."""
         for run in runs:
-            points = [apply(matrix, point) for point in run.points]
-            self._count(len(points) - 1)
-            if not max(max(abs(x), abs(y)) for x, y in points) < FARTHEST:
+            if isinstance(run, Bent):
+                self._count(len(run.pieces))
+                points = [apply(matrix, point) for piece in run.pieces for point in piece.around]
+            else:
+                self._count(len(run.points) - 1)
+                points = [apply(matrix, point) for point in run.points]
+            if not all(abs(x) < FARTHEST and abs(y) < FARTHEST for x, y in points):
                 self.leave_out(element.tag, layer, "has a coordinate that is no place")
             elif isinstance(run, Bent):
                 self._curves.append(_curve(run, matrix, layer, colour, element.name))
