@@ -46,10 +46,14 @@ def sketch(
         for i, j in pairwise(through):
             if (j, i) not in beams:
                 beams[i, j] = None
-    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    return Grid(places, list(beams), np.zeros(len(beams)), middle_joint(places), material)
+
+
+def middle_joint(joints: Numbers) -> int:
+    """Return which of the joints (J, 2) is nearest to the middle of all, the first of several."""
+    middle = (joints.min(axis=0) + joints.max(axis=0)) / 2
     # Rounded, so that ties do not hang on the last bit.
-    fixed = np.argmin(np.linalg.norm(places - middle, axis=1).round(6))
-    return Grid(places, list(beams), np.zeros(len(beams)), int(fixed), material)
+    return int(np.argmin(np.linalg.norm(joints - middle, axis=1).round(6)))
 
 
 def _points(line: ArrayLike, k: int) -> Numbers:
