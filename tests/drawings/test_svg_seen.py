@@ -208,6 +208,11 @@ def test_layers(body, layer):
     assert [line.layer for line in read(svg(body)).lines] == [layer]
 
 
+def test_figma_numbers_a_name_used_before():
+    body = "".join(f'<g id="{name}">{LINE}</g>' for name in ("top 0.5", "top 0.5_2", "top_25"))
+    assert [line.layer for line in read(svg(body)).lines] == ["top 0.5", "top 0.5", "top_25"]
+
+
 def test_the_only_layer_of_illustrator_is_the_outermost_svg():
     text = svg(LINE, PX + ' id="top_0.5"', ILLUSTRATOR)
     assert read(text).lines[0].layer == "top_0.5"

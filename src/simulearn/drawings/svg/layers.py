@@ -23,6 +23,7 @@ class Layers:
         self._names: dict[Element, str] = {}
         self._illustrator = any("Adobe Illustrator" in text for text in document.comments)
         groups = [element for element in document.elements if element.tag == "g"]
+        self._ids = {group.attributes.get("id") for group in groups}
         self._inkscape = any(map(_is_inkscape_layer, groups))
         self._grouped = any(map(self.name, groups))
 
@@ -41,8 +42,13 @@ class Layers:
             return name or attributes.get("id", "")
         if not name and not self._inkscape:
             name = attributes.get("data-name") or attributes.get(f"{SERIF} id") or ""
-            name = name or _decoded(attributes.get("id", ""))
+            name = name or _decoded(self._without_count(attributes.get("id", "")))
         return _by_a_person(name)
+
+    def _without_count(self, identity: str) -> str:
+        """Return an id without the number that Figma adds to a name used before: `top 0.5_2`."""
+        first = re.sub(r"_\d+$", "", identity)
+        return first if " " in first and first in self._ids else identity
 
     def root_name(self) -> str:
         """Return the name of the only layer, which Illustrator writes on the outermost `svg`."""

@@ -177,16 +177,3 @@ def _unit(px: float, step: float, source: str) -> Unit:
         if abs(length / mm - 1.0) < 1e-4:
             return Unit(length, name, source)
     return Unit(length, "unit", source)
-
-
-def guessed(extent: float) -> Unit | None:
-    """Return the likeliest unit of numbers without one, by how wide the drawing is (units)."""
-    for name in ("mm", "cm", "in", "m", "px"):
-        width = extent * _NAMES[name]
-        if 20.0 <= width <= 1000.0:
-            return Unit(
-                _NAMES[name],
-                name,
-                f"the file says no size; in {name} the drawing would be {width:.4g} mm wide",
-            )
-    return None

@@ -6,7 +6,7 @@ import numpy as np
 
 from simulearn.drawings.drawing import Curve, Drawing, LeftOut, Line
 from simulearn.drawings.svg.curves import Matrix, apply, flattened
-from simulearn.drawings.svg.page import Page, guessed
+from simulearn.drawings.svg.page import Page
 from simulearn.drawings.svg.path import Bent, Run
 from simulearn.drawings.svg.tree import Element
 from simulearn.errors import InputError
@@ -62,10 +62,6 @@ class Collected:
 
     def drawing(self, page: Page, messages: list[str]) -> Drawing:
         """Return all as a drawing."""
-        guess = page.guess
-        if page.unit is None and guess is None and self._lines:
-            points = np.concatenate([line.points for line in self._lines])
-            guess = guessed(float(np.ptp(points, axis=0).max()))
         return Drawing(
             "SVG",
             self._lines,
@@ -75,7 +71,7 @@ class Collected:
                 for (kind, layer, reason), count in self._left.items()
             ],
             page.unit,
-            guess,
+            page.guess,
             messages=messages + self._messages(page.corner),
         )
 
