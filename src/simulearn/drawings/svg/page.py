@@ -174,6 +174,6 @@ def _unit(px: float, step: float, source: str) -> Unit:
     """Return the unit of which a px (mm) has `step`, with its name, where it has one."""
     length = px / step
     for name, mm in (*_NAMES.items(), ("px", px)):
-        if abs(length / mm - 1.0) < 1e-4:
-            return Unit(length, name, source)
+        if (wrong := abs(length / mm - 1.0)) < 1e-4:
+            return Unit(mm if wrong < 1e-12 else length, name, source)
     return Unit(length, "unit", source)
