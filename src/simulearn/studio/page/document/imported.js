@@ -29,17 +29,18 @@ export function allMends(before, found, without) {
   const now = new Map(found.map((mend) => [mend.code, { ...mend, done: true }]));
   const off = new Set(without);
   const kept = before.flatMap((mend) => {
-    if (off.has(mend.code)) return [{ ...mend, done: false }];
     const again = now.get(mend.code);
     now.delete(mend.code);
+    if (off.has(mend.code)) return [{ ...mend, done: false }];
     return again ? [again] : [];
   });
   return [...kept, ...now.values()];
 }
 
-/** Return the names of the layers that are read once one of them is taken or not. */
-export function layersAfter(layers, name, taken) {
-  return layers.filter((layer) => (layer.name === name ? taken : layer.taken)).map((layer) => layer.name);
+/** Return a list with an entry, or without it. */
+export function withEntry(list, entry, on) {
+  const others = list.filter((one) => one !== entry);
+  return on ? [...others, entry] : others;
 }
 
 /** Return a pattern that fits a name and nothing else: * ? and [ stand for themselves. */

@@ -1,5 +1,6 @@
 // Questions to the server. Every function returns what was asked for, or throws a Problem.
 
+import { patternOf } from "../document/imported.js";
 import { MEDIA_TYPE, parseFrames } from "./frames.js";
 
 /** Why the server did not answer a question; `code` and `where` are for programs.
@@ -86,11 +87,13 @@ export const saveDocument = (id, revision, document, { last = false } = {}) =>
 
 /** Return {grid, goals, name, messages, drawing} of a file that the user opens.
  *
- * options: how a drawing is to be read; those that are null or empty are left to the server.
+ * options: how a drawing is to be read: { unit, width, layers, flatten, actuators, tolerance, without };
+ * those that are null are left to the server. layers are names.
  */
 export async function openFile(file, options = {}) {
   const query = new URLSearchParams({ name: file.name });
-  for (const [key, value] of Object.entries(options))
+  const layers = options.layers?.map(patternOf);
+  for (const [key, value] of Object.entries({ ...options, layers }))
     for (const one of [value ?? []].flat()) query.append(key, one);
   let response;
   try {

@@ -12,9 +12,13 @@ const phone = globalThis.matchMedia("(max-width: 599px)"); // as in panels/media
 const known = new WeakMap(); // grid -> what is told of the drawing that it came from
 const changes = ref(0); // in `known`
 let numbers = 0;
+let wanted = null; // options for which the drawing is still to be read
 
 /** Whether a drawing is being read in another way. */
 export const rereading = ref(false);
+
+/** How often a drawing could not be read in another way: what was switched then goes back. */
+export const refusals = ref(0);
 
 /** Return how a document came out of a drawing; null where it did not, or was worked on since.
  *
@@ -38,37 +42,52 @@ export function showPlan() {
   if (view.pane === "shape" || phone.matches) view.pane = "plan";
 }
 
+/** Read the document's drawing again; changes in a row are one step of undo, and only the last is read.
+ *
+ * change(options): the options in place of those so far. Return { problem, file, options } where the
+ * drawing cannot be read so; the document then stays.
+ */
+export async function readAgain(change) {
+  const drawing = known.get(state.document.grid);
+  if (!drawing) return null;
+  wanted = change(wanted ?? drawing.options);
+  if (rereading.value) return null;
+  rereading.value = true;
+  let refusal = null;
+  while (wanted) {
+    const options = wanted;
+    wanted = null;
+    try {
+      const found = await openFile(drawing.file, options);
+      if (wanted) continue;
+      if (known.get(state.document.grid)?.number !== drawing.number) break; // another one was opened
+      take(drawing.file, options, found);
+    } catch (problem) {
+      if (!wanted) refusal = { problem, file: drawing.file, options };
+    }
+  }
+  rereading.value = false;
+  if (refusal) refusals.value += 1;
+  return refusal;
+}
+
+function take(file, options, found) {
+  const before = known.get(state.document.grid);
+  const { material } = state.document.grid;
+  const next = { ...readGrid(found.grid), material };
+  edit((document) => (sameGrid(document.grid, next) ? document : withGrid(document, next)), {
+    label: t("drawing.didRead", { file: file.name }), merge: `drawing ${before.number}`,
+  });
+  select({});
+  remember(file, options, found, before);
+}
+
 function remember(file, options, found, before = null) {
   const { drawing, messages } = found;
-  const mends = allMends(before?.mends ?? [], drawing.mends, options.without ?? []);
+  const alike = before?.unit.mm === drawing.unit.mm; // else the places of before are elsewhere
+  const earlier = (before?.mends ?? []).map((mend) => (alike ? mend : { ...mend, places: [] }));
+  const mends = allMends(earlier, drawing.mends, options.without ?? []);
   const number = before?.number ?? (numbers += 1);
   known.set(state.document.grid, { file, options, ...drawing, mends, messages, number });
   changes.value += 1;
-}
-
-/** Read the document's drawing with other options; several changes in a row are one step of undo.
- *
- * Return the Problem where it cannot be read so; the document then stays.
- */
-export async function readAgain(change) {
-  const { grid } = state.document;
-  const before = known.get(grid);
-  if (!before || rereading.value) return null;
-  const options = { ...before.options, ...change };
-  rereading.value = true;
-  try {
-    const found = await openFile(before.file, options);
-    if (state.document.grid !== grid) return null; // it was changed meanwhile
-    const next = { ...readGrid(found.grid), material: grid.material };
-    edit((document) => (sameGrid(document.grid, next) ? document : withGrid(document, next)), {
-      label: t("drawing.didRead", { file: before.file.name }), merge: `drawing ${before.number}`,
-    });
-    select({});
-    remember(before.file, options, found, before);
-    return null;
-  } catch (problem) {
-    return { ...problem, message: problem.message, options, file: before.file };
-  } finally {
-    rereading.value = false;
-  }
 }

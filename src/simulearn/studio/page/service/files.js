@@ -62,7 +62,8 @@ function documentOf({ grid, goals = [], name, printer, drawing }) {
 /** Say why a file cannot be opened, or ask for what is missing to open it. */
 export function refuse(file, problem, options) {
   const { code, message, errors = [] } = problem;
-  const ask = { reason: message, choose: (choice) => open(file, { ...options, ...choice }) };
+  const reason = message.replace(/^[^:]*: /, ""); // the title names the file
+  const ask = { reason, choose: (choice) => open(file, { ...options, ...choice }) };
   if (code === "unit-unknown") {
     state.dialog = { name: "unit", file: file.name, size: problem.size, guess: problem.guess, ...ask };
     return;
