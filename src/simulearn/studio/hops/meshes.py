@@ -15,13 +15,14 @@ from simulearn.studio.hops.design import Design
 Points = NDArray[np.float64]
 
 SPACING = 5.0  # mm along a beam; Rhino shows the surface smooth between
+STRAIGHT = 1e4  # mm; what is flat needs no points between
 ALONG = np.linspace(0, 1, 9)  # of a beam, where the points of its axis are
 GREY = tuple(int(GHOST[k : k + 2], 16) for k in (1, 3, 5))
 
 
-def surface(result: Result) -> Skin:
-    """Return the surface that meshes are made of."""
-    return skin(result, SPACING)
+def surface(result: Result, frame: int) -> Skin:
+    """Return the surface that the mesh of a frame is made of."""
+    return skin(result, SPACING if frame else STRAIGHT)
 
 
 def mesh(shape: Skin, frame: int, design: Design, coloured: bool = True) -> Any:
