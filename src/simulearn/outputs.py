@@ -29,6 +29,12 @@ def _animation(result: Result, path: Path, cancel: Cancel | None = None) -> None
     animate(result, path, cancel=cancel)
 
 
+def _page(result: Result, path: Path) -> None:
+    from simulearn.interop import write_html
+
+    write_html(result, path)
+
+
 def _surface(result: Result, path: Path) -> None:
     from simulearn.interop import write_surface
 
@@ -54,12 +60,17 @@ WRITERS: dict[str, Writer] = {
     ".pdf": _figure,
     ".svg": _figure,
     ".gif": _animation,
+    ".html": _page,
     ".glb": _surface,
     ".stl": _surface,
     ".vtu": _vtu,
     ".pvd": _pvd,
 }
-NEEDS = {".vtu": ("meshio", "vtk"), ".pvd": ("meshio", "vtk")}  # package, extra
+NEEDS = {  # ending -> package, extra
+    ".html": ("nicegui", "studio"),
+    ".vtu": ("meshio", "vtk"),
+    ".pvd": ("meshio", "vtk"),
+}
 
 
 def check(paths: Sequence[Path], grid: Path | None = None) -> None:

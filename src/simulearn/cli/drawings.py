@@ -97,6 +97,8 @@ def import_(
     _print(result)
     for message in result.messages:
         _say(message.message, message.code in WARNINGS)
+    if any(message.code == "curves" for message in result.messages):
+        _say("--flatten 0.5 makes curves straight pieces that keep within 0.5 mm", False)
     for text in (*map(_not_yet, _in_short(report.errors)), *_in_short(report.warnings)):
         _say(text, True)
     print_files([output])

@@ -48,8 +48,8 @@ def simulate(
             "-o",
             "--output",
             help="A file to write (repeat for more); its ending picks the format: "
-            ".json .npz .png .pdf .svg .gif .glb .stl .vtu .pvd. For several grids: a folder, "
-            "which gets a .json for each.",
+            ".json .npz .png .pdf .svg .gif .html .glb .stl .vtu .pvd. For several grids: a "
+            "folder, which gets a .json for each.",
         ),
     ] = None,
     as_json: Json = False,

@@ -63,7 +63,7 @@ def near_layer(layer: str) -> bool:
     if words[0] in SIGNS or (words[-1] in SIGNS and len(words) <= 2):
         return True
     number = any(mark.isdigit() for mark in name)
-    if not number and words[0][:4] not in ("bott", "pass"):
+    if not number and len(words[0]) < 5:
         return False
     return any(
         SequenceMatcher(None, words[0], word).ratio() >= SLIP and abs(len(words[0]) - len(word)) < 2

@@ -103,7 +103,7 @@ def _groups(count: int, a: Indices, b: Indices) -> Indices:
 def _fitted(ends: Numbers, group: Indices) -> tuple[Numbers, Numbers]:
     """Return for each group the straight piece that fits it (G, 2, 2), and the largest deviation.
 
-    The least-squares line counts each bit of length alike.
+    Pieces count by the cubes of their lengths: short ones hardly say where the axis is.
     """
     count = int(group.max()) + 1
     along = ends[:, 1] - ends[:, 0]
@@ -112,12 +112,13 @@ def _fitted(ends: Numbers, group: Indices) -> tuple[Numbers, Numbers]:
     def total(values: Numbers) -> Numbers:
         return np.asarray(np.bincount(group, values, count), np.float64)
 
-    weight = total(length)
+    heft = length**3
+    weight = total(heft)
     middle = ends.mean(axis=1)
-    centre = np.stack([total(length * middle[:, k]) / weight for k in (0, 1)], axis=1)
+    centre = np.stack([total(heft * middle[:, k]) / weight for k in (0, 1)], axis=1)
     apart = middle - centre[group]
     xx, xy, yy = (
-        total(length * (apart[:, i] * apart[:, j] + along[:, i] * along[:, j] / 12))
+        total(heft * (apart[:, i] * apart[:, j] + along[:, i] * along[:, j] / 12))
         for i, j in ((0, 0), (0, 1), (1, 1))
     )
     angle = np.arctan2(2 * xy, xx - yy) / 2

@@ -10,7 +10,7 @@ import numpy as np
 
 from simulearn.drawings.drawing import Drawing, LeftOut, Line, Unit
 from simulearn.drawings.graphs import edges_of, is_graph
-from simulearn.drawings.points import MOST_SEGMENTS, Points, is_point, is_scalar, too_many
+from simulearn.drawings.points import MOST_SEGMENTS, Points, is_point, too_many
 from simulearn.drawings.units import unit_named
 from simulearn.errors import InputError
 from simulearn.files import parse_json
@@ -86,7 +86,7 @@ class _Reader:
     def _read_list(self, value: list[Any], where: str, layer: str, level: int) -> None:
         if value and all(map(is_point, value)):
             self._add(value, where, layer)
-        elif value and all(map(is_scalar, value)):
+        elif value and all(isinstance(part, (int, float)) for part in value):
             if len(value) not in (4, 6):
                 text = f"{where or 'it'} has {len(value)} numbers; a line has 4 or 6"
                 raise InputError(f"{text}; {LOOKED_FOR}", "format", where)

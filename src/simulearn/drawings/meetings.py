@@ -18,6 +18,9 @@ Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
+# Sines of the angles below which runs are parallel, and nearly so.
+PARALLEL, SHALLOW = 1e-6, 0.02
+
 
 @dataclass(frozen=True, eq=False)
 class Stations:
@@ -141,7 +144,11 @@ def _meetings(
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         place = np.stack([cross(apart, along[b]), cross(apart, along[a])]) / turn
         run = np.stack([a, b])
-        meet = (turn != 0) & ((place >= -reach) & (place <= length[run] + reach)).all(axis=0)
+        # Where nearly parallel runs follow each other, their crossing may be anywhere near the
+        # ends; only one that is well within both is meant.
+        inside = np.where(abs(turn) < SHALLOW, -reach, reach)
+        meet = ((place >= -inside) & (place <= length[run] + inside)).all(axis=0)
+        meet &= abs(turn) > PARALLEL
     runs, places = [run[:, meet]], [place[:, meet]]
     # Those whose axes cross elsewhere meet where an end of one lies on the other.
     for one, other in (run[:, ~meet], run[::-1, ~meet]):

@@ -83,7 +83,8 @@ def mended(
         if len(runs.ends) < len(pieces.ends):
             pairs = neighbours(runs.ends, 2 * tolerance)
         at = stations(runs.ends, pairs, tolerance, without)
-        near = EXACT * tolerance if "overshoot" in without else tolerance
+        as_drawn = {"gap", "overshoot"} & set(without)
+        near = EXACT * tolerance if as_drawn else tolerance
         at, joints = placed(runs.ends, at, near)
         places |= (marks := found(runs.ends, at, joints, tolerance))
         places["crumb"] = np.concatenate([pieces.crumbs, marks["crumb"]])

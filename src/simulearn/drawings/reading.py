@@ -9,6 +9,7 @@ from io import BytesIO
 from simulearn.drawings.drawing import Drawing
 from simulearn.drawings.lists import read_json_lines
 from simulearn.drawings.objfile import read_obj
+from simulearn.drawings.pages import page_contents
 from simulearn.drawings.tables import read_csv
 from simulearn.drawings.text import decoded
 from simulearn.errors import InputError
@@ -31,12 +32,13 @@ OTHERS = (
     (rb"\x89PNG|\xff\xd8\xff|GIF8|BM.{4}\0\0\0\0|II\*\0|MM\0\*|RIFF.{4}WEBP", PICTURE),
     (rb"\x89HDF", "an HDF5 file; a drawing has lines"),
     (rb"BLENDER", "a Blender file; save its edges as OBJ"),
+    (rb"(?:\s*;[^\n]*\n)*\s*[GM]\d+\b", "G-code of a print; open the design that it was made from"),
     (rb"PK\x03\x04", "a ZIP archive (3MF, FreeCAD and others); save lines as DXF or SVG"),
     (rb"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0", "a SketchUp file; save it as DXF"),
     (rb"\xd0\xcf\x11\xe0", "an old Office or CAD file; save lines as DXF or SVG"),
 )
 # Readers' packages, which `pip install 'simulearn[rhino]'` brings.
-PACKAGES = {"ezdxf": "DXF", "rhino3dm": "Rhino (.3dm)", "svgelements": "SVG"}
+PACKAGES = {"ezdxf": "DXF", "rhino3dm": "Rhino (.3dm)", "svgelements": "SVG", "tinycss2": "SVG"}
 DXF = re.compile(r"\s*(?:999[ \t]*\n.*\n\s*)*0[ \t]*\n[ \t]*SECTION\b", re.IGNORECASE)
 SVG = re.compile(r"<(?:[A-Za-z_][\w.-]*:)?svg[\s>/]")
 OBJ = re.compile(r"^[ \t]*v[ \t]+[-+.\d]", re.MULTILINE)
@@ -45,7 +47,7 @@ NUMBERS = re.compile(r"[-+]?[\d.]")
 
 
 def own_grid(data: bytes) -> Grid | None:
-    """Return the grid of a grid, result or task file of ours; None for any other file.
+    """Return the grid of a grid, result, task or page of ours; None for any other file.
 
     Args:
         data: contents of the file.
@@ -53,10 +55,13 @@ def own_grid(data: bytes) -> Grid | None:
     Raises:
         InputError: it is one of ours, but not sound.
     """
-    if len(data) > MOST_BYTES or not data.lstrip(BEFORE_JSON).startswith(b"{"):
+    if len(data) > MOST_BYTES:
+        return None
+    page = page_contents(data)
+    if page is None and not data.lstrip(BEFORE_JSON).startswith(b"{"):
         return None
     try:
-        value = parse_json(decoded(data))
+        value = parse_json(decoded(data) if page is None else page)
     except InputError:
         return None
     schema = value.get("schema")

@@ -97,10 +97,7 @@ def curves_left_out(curves: Iterable[Curve]) -> Iterator[Message]:
     for curve in curves:
         count[curve.kind, curve.layer] = count.get((curve.kind, curve.layer), 0) + 1
     for (kind, layer), number in count.items():
-        text = (
-            f"{number} x {kind}{on_layer(layer)} left out: a beam is straight; "
-            "curves become straight pieces only for a largest distance that is given"
-        )
+        text = f"{number} x {kind}{on_layer(layer)} left out: is curved, and beams are straight"
         yield Message("curves", layer, text)
 
 

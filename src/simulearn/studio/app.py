@@ -10,7 +10,7 @@ from fastapi import FastAPI, Request, Response
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from simulearn.studio import frames
+from simulearn.interop import frames
 from simulearn.studio.bodies import json_response
 from simulearn.studio.documents import Documents
 from simulearn.studio.hops import routes as hops

@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from simulearn.errors import InputError
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.gridfile import GridFile
+from simulearn.interop import frames
 from simulearn.inverse import SearchResult, Step, Task, optimize, search_figures, task_from_dict
 from simulearn.inverse.search import method
 from simulearn.inverse.space import Space
 from simulearn.simulate import Failure, Outcome, Result, outcome_to_dict
-from simulearn.studio import frames
 from simulearn.studio.bodies import GridBody, JsonRoute, TaskBody, json_response
 from simulearn.studio.jobs import Answer, Job, Jobs
 from simulearn.studio.problems import Problem, ProblemBody
