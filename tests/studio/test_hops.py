@@ -698,3 +698,20 @@ def test_saddle_of_the_library_from_its_axes(place):
     result = one(engine("learned").simulate([grid])[0])
     heights = sorted(z for _, _, z in component.flat("Joints"))
     assert heights == pytest.approx(sorted(result.centres[-1, :, 2]), abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_points_come_back_to_where_they_were(seed):
+    """Any plane, and points in one line only."""
+    from simulearn.drawings.drawing import Unit
+    from simulearn.studio.hops.placement import placement_of
+
+    rng = np.random.default_rng(seed)
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][: 2 if seed < 4 else 1]
+    places = rng.uniform(-3, 3, (9, len(axes))) @ axes + rng.uniform(-50, 50, 3)
+    placement, _ = placement_of(places, Unit(25.4, "in", ""))
+    assert placement.axes @ placement.axes.T == pytest.approx(np.eye(3), abs=1e-9)
+    assert np.linalg.det(placement.axes) == pytest.approx(1)
+    inside = placement.inside(places)
+    assert np.abs(inside[:, 2]).max() < 1e-9
+    assert placement.outside(inside) == pytest.approx(places, abs=1e-9)
