@@ -94,7 +94,7 @@ def test_text_and_pictures_are_counted():
 def test_what_is_not_heeded_is_told():
     body = (
         f'<g clip-path="url(#c)">{LINE}</g><line x2="9" mask="url(#m)"/><script>x()</script>'
-        '<line x2="7"><animate attributeName="x2"/></line>'
+        '<line x2="7" style="rotate:30deg"/><animate attributeName="x2"/>'
         "<style>@import 'a.css'; a:first-child{stroke:red} a:hover{stroke:red}</style>"
     )
     messages = read(svg(body, before='<?xml-stylesheet href="a.css"?>')).messages
@@ -103,6 +103,7 @@ def test_what_is_not_heeded_is_told():
     assert any("@import" in m for m in messages)
     assert any("another file" in m for m in messages)
     assert any("animations" in m for m in messages)
+    assert any("property rotate" in m for m in messages)
     assert not any("hover" in m for m in messages)
 
 

@@ -11,7 +11,7 @@ from simulearn.drawings.svg.lengths import IDENTITY, Viewport, after, fitted, sh
 from simulearn.drawings.svg.page import page_of
 from simulearn.drawings.svg.result import Collected
 from simulearn.drawings.svg.shapes import runs_of
-from simulearn.drawings.svg.sheet import StyleSheet
+from simulearn.drawings.svg.sheet import UNREAD, StyleSheet
 from simulearn.drawings.svg.style import Style, inherited, is_hidden, is_zero, painted
 from simulearn.drawings.svg.tree import DEEPEST, XLINK, Document, Element, read_tree
 from simulearn.errors import InputError
@@ -168,6 +168,8 @@ class _Reader:
         for edge in ("clip-path", "mask"):
             if declared.get(edge, "none") != "none" and not hidden:
                 self.found.tell("{} clipped or masked; what the edge hides is read, too.")
+        for property_ in sorted(UNREAD & declared.keys()):
+            self.found.tell(f"The CSS property {property_} is not read.")
         matrix = place.matrix
         if turn := self.transform(element, declared, place.viewport, style.font_size):
             matrix = after(matrix, turn)

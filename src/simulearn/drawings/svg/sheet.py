@@ -37,12 +37,15 @@ PROPERTIES = frozenset(
         "y",
     )
 )
+# Those of a style that change what is drawn, too, but are not read: they are told.
+UNREAD = frozenset(("rotate", "scale", "translate", "transform-box", "d", "offset-path", "zoom"))
 LARGEST_SHEETS = 2**20  # characters
 MOST_CHECKS = 300_000  # of a rule with an element
 MOST_PARTS = 20  # of a selector
 
 LONGEST_STYLE = 100_000  # characters of a `style` attribute
 
+_HEEDED = PROPERTIES | UNREAD
 _PLAIN = re.compile(r"[\w\s:;#.,%+-]*")
 _SCREEN = ("", "all", "screen")
 _NEVER = {"hover", "focus", "active", "visited"}  # states of a screen that a drawing has not
@@ -199,7 +202,7 @@ def declarations(style: str) -> tuple[Declaration, ...]:
         pairs = (part.partition(":") for part in style.split(";"))
         named = ((name.strip().lower(), value.strip()) for name, _, value in pairs)
         return tuple(
-            Declaration(name, value, False) for name, value in named if name in PROPERTIES and value
+            Declaration(name, value, False) for name, value in named if name in _HEEDED and value
         )
     return _declarations(style[:LONGEST_STYLE])
 
@@ -209,7 +212,7 @@ def _declarations(content: Any) -> tuple[Declaration, ...]:
     return tuple(
         Declaration(node.lower_name, tinycss2.serialize(node.value).strip(), node.important)
         for node in nodes
-        if node.type == "declaration" and node.lower_name in PROPERTIES
+        if node.type == "declaration" and node.lower_name in _HEEDED
     )
 
 
