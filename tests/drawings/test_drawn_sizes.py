@@ -167,3 +167,21 @@ def test_options_that_make_no_sense(option):
     for value in (0, -1, float("nan"), float("inf")):
         with pytest.raises(InputError, match=f"the {option} is .* mm; it is more than 0"):
             grid_of(drawing(l_grid()), Options(**{option: value}))
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e300])
+def test_a_coordinate_that_makes_no_sense(value):
+    with pytest.raises(InputError, match=r"a line has a point at \[.*, 0, 0\]; coordinates are"):
+        grid_of(drawing([*l_grid(), [[0, 0], [value, 0]]]))
+
+
+def test_lines_of_no_length():
+    with pytest.raises(InputError, match="all lines have the length 0") as error:
+        grid_of(drawing([[[0, 0], [0, 0]], [[5, 5], [5, 5]]]))
+    assert error.value.code == "no-lines"
+
+
+def test_what_is_always_mended_is_told():
+    result = grid_of(drawing([*l_grid(), l_grid()[0]]), Options(without=frozenset({"double"})))
+    assert same(result.grid, l_grid())
+    assert codes(result)["mend-needed"].startswith("double: a grid has one beam between two")

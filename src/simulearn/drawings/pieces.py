@@ -9,6 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.grid.sketch import cross
 
 Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -183,18 +184,13 @@ def _near(ends: Numbers, reach: float) -> Iterator[Indices]:
 def _apart(a: Numbers, b: Numbers) -> Numbers:
     """Return the distances (n,) of straight pieces (n, 2, 2) from others."""
     sides = [
-        _turn(one[:, 0], one[:, 1], other[:, k]) for one, other in ((a, b), (b, a)) for k in (0, 1)
+        cross(one[:, 1] - one[:, 0], other[:, k] - one[:, 0])
+        for one, other in ((a, b), (b, a))
+        for k in (0, 1)
     ]
-    cross = (sides[0] * sides[1] < 0) & (sides[2] * sides[3] < 0)
+    across = (sides[0] * sides[1] < 0) & (sides[2] * sides[3] < 0)
     apart = [_to_point(one, other[:, k]) for one, other in ((a, b), (b, a)) for k in (0, 1)]
-    return np.where(cross, 0.0, np.minimum.reduce(apart))
-
-
-def _turn(a: Numbers, b: Numbers, point: Numbers) -> Numbers:
-    """Return on which side of lines from a to b points (n, 2) lie, by the sign."""
-    along, to = b - a, point - a
-    turn: Numbers = along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]
-    return turn
+    return np.where(across, 0.0, np.minimum.reduce(apart))
 
 
 def _to_point(piece: Numbers, point: Numbers) -> Numbers:
