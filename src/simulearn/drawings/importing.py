@@ -27,6 +27,8 @@ Numbers = NDArray[np.float64]
 COARSE = 1 / 300
 # Coordinates beyond this, in any unit, are damaged.
 BEYOND = 1e12
+# A move by less is not worth a word, mm.
+SHIFT = 0.01
 # What is mended whatever a person chooses, and why.
 ALWAYS = {
     "crumb": "what is shorter than the tolerance has no place in a grid",
@@ -49,6 +51,7 @@ class Options:
         tolerance: how far lines may miss each other, mm.
         without: codes of mends that are not done.
         material: name of the material system.
+        place: where the grid lies: its lower left "corner" at the origin, or as "drawn".
     """
 
     unit: str | None = None
@@ -59,6 +62,7 @@ class Options:
     tolerance: float = 1.0
     without: frozenset[str] = frozenset()
     material: str = "pla-hot-water"
+    place: Literal["corner", "drawn"] = "corner"
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +147,7 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
     result.places.update(turned)
     if curves:
         result.places["flattened"] = np.stack([line[0] for line in plane[len(lines) :]])
-    return _imported(result, drawing, unit, layers, messages, options.material)
+    return _imported(result, drawing, unit, layers, messages, options)
 
 
 def _always(code: str) -> Message:
@@ -273,19 +277,21 @@ def _imported(
     unit: Unit,
     layers: Sequence[LayerUse],
     messages: list[Message],
-    material: str,
+    options: Options,
 ) -> Imported:
     """Return the import that a mended drawing gives."""
     net, places = result.net, result.places
     joints = net.joints
-    if (abs(joints) > FARTHEST).any():
+    if options.place == "corner" or (abs(joints) > FARTHEST).any():
         corner = joints.min(axis=0)
         joints = joints - corner
         places = {code: spots - corner for code, spots in places.items()}
-        text = f"moved by {-corner[0]:.6g}, {-corner[1]:.6g} mm: it lies far from the origin"
-        messages.append(Message("moved", "grid", text))
+        if (abs(corner) > SHIFT).any():
+            move = ", ".join(f"{value + 0.0:.6g}" for value in -corner)
+            text = f"moved by [{move}] mm, so that its lower left corner is the origin"
+            messages.append(Message("moved", "grid", text))
     fixed = middle_joint(joints)
-    grid = Grid(joints, net.beams, net.ratio, fixed, material)
+    grid = Grid(joints, net.beams, net.ratio, fixed, options.material)
     for wrong in structure_errors(grid):
         raise InputError(wrong.message, wrong.code, wrong.where)
     place = ", ".join(f"{value:g}" for value in joints[fixed])

@@ -180,7 +180,7 @@ def design_from(
             drawing.lines.append(replace(line, points=_level(placement, line.points)))
         else:
             drawing.curves.append(line)
-    found = grid_of(drawing, Options(actuators=actuators))
+    found = grid_of(drawing, Options(actuators=actuators, place="drawn"))
     check_size(found.grid, settings)
     grid, moved = _held(found.grid, fixed, placement)
     design = Design(grid, placement)
