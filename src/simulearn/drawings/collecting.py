@@ -14,7 +14,33 @@ MAX_SEGMENTS = 200_000
 MAX_ENTITIES = 500_000
 MAX_DEPTH = 64
 
+TOO_LARGE = 1e100  # no coordinate; also what programs write for a number that was never set
+
 Matrix = NDArray[np.float64]
+
+
+def exploded(
+    name: str,
+    contents: Callable[[str], tuple[int, list[tuple[str, int]]]],
+    sizes: dict[str, int],
+    depth: int = 0,
+) -> int:
+    """Return how many things a block comes to, those of the blocks in it counted.
+
+    Args:
+        name: of the block.
+        contents: returns for a block how many things it holds, and the blocks among them with how
+            often each is placed.
+        sizes: those that are known, to which new ones are added.
+        depth: of the nesting.
+    """
+    if name not in sizes:
+        sizes[name] = 0  # for a block that contains itself
+        count, placed = contents(name)
+        for inner, times in placed if depth < MAX_DEPTH else ():
+            count += times * (1 + exploded(inner, contents, sizes, depth + 1))
+        sizes[name] = count
+    return sizes[name]
 
 
 class Collected:
@@ -38,14 +64,22 @@ class Collected:
         """All that is not read, counted by kind, layer and reason."""
         return [LeftOut(k, n, layer, why) for (k, layer, why), n in self._left_out.items()]
 
-    def visit(self, count: int = 1) -> None:
-        """Count things that are looked at.
+    def visit(self) -> None:
+        """Count a thing that is looked at.
 
         Raises:
             InputError: they are too many.
         """
-        self._entities += count
-        if self._entities > MAX_ENTITIES:
+        self._entities += 1
+        self.refuse_above(self._entities)
+
+    def refuse_above(self, count: int) -> None:
+        """Refuse a drawing that comes to too many things.
+
+        Raises:
+            InputError: they are too many.
+        """
+        if count > MAX_ENTITIES:
             raise InputError(
                 f"the drawing has more than {MAX_ENTITIES:,} objects, blocks counted as often as"
                 " they are placed; keep only the lines of the grid",
@@ -77,10 +111,11 @@ class Collected:
         Raises:
             InputError: the drawing has too many.
         """
-        placed = _placed(points, matrix)
+        with np.errstate(all="ignore"):  # numbers too large to place are told below
+            placed = _placed(points, matrix)
         if len(placed) < 2:
             self.leave(kind, layer, "has no length")
-        elif not np.isfinite(placed).all():
+        elif not (np.abs(placed) < TOO_LARGE).all():
             self.leave(kind, layer, "has coordinates that are no numbers")
         else:
             self._segment(len(placed) - 1)

@@ -38,8 +38,15 @@ def read_dxf(data: bytes) -> Drawing:
         )
     found, messages = document(data)
     walk = Walk(found)
-    walk.run()
-    number = found.header.get("$INSUNITS", 0)
+    try:
+        walk.run()
+    except InputError:
+        raise
+    except Exception:  # a damaged file fails in the library in any way
+        raise InputError(
+            "the DXF file is damaged: its parts do not fit together", "dxf-broken"
+        ) from None
+    number = _variable(data, found, "$INSUNITS")
     named = unit(_UNITS[number], f"$INSUNITS of the file is {number}") if _known(number) else None
     if number and not named:
         messages.append(f"$INSUNITS of the file is {number}, which is no unit.")
@@ -49,7 +56,7 @@ def read_dxf(data: bytes) -> Drawing:
         walk.found.curves,
         walk.found.left_out,
         unit=named,
-        guess=None if named else _guess(found, walk.found.lines),
+        guess=None if named else _guess(_variable(data, found, "$MEASUREMENT"), walk.found.lines),
         messages=[*messages, *walk.found.messages],
     )
 
@@ -58,9 +65,18 @@ def _known(number: Any) -> bool:
     return isinstance(number, int) and 0 < number < len(_UNITS)
 
 
-def _guess(found: Any, lines: list[Line]) -> Unit | None:
-    """Return the likeliest unit of a file that names none."""
-    measurement = found.header.get("$MEASUREMENT", None)
+def _variable(data: bytes, found: Any, name: str) -> Any:
+    """Return a variable of the head, or None: ezdxf fills the head of files that have none."""
+    return found.header.get(name) if name.encode() in data else None
+
+
+def _guess(measurement: Any, lines: list[Line]) -> Unit | None:
+    """Return the likeliest unit of a file that names none.
+
+    Args:
+        measurement: what $MEASUREMENT says: 1 is metric, 0 English.
+        lines: in the unit of the file.
+    """
     reason = f"$MEASUREMENT of the file is {measurement}"
     if measurement == 1:
         return likely_unit(lines, ("mm", "cm", "m"), f"{reason}: metric")

@@ -7,9 +7,14 @@ from typing import Any
 
 from simulearn.errors import InputError
 
+MAX_POINTS = 500_000
+
 _BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 _CODEPAGE = re.compile(rb"\$DWGCODEPAGE\s+3\s+(\S+)")
 _VERSION = re.compile(rb"\$ACADVER\s+1\s+(AC\d{4})")
+# What ezdxf repairs of entities, by the numbers of ezdxf.audit.AuditError; it repairs much else
+# that no line depends on.
+_LOSSES = {8, 11, 16, 103, 104, 108, 116, 117, *range(210, 229)}
 _UNICODE = "AC1021"  # from this version on a file is UTF-8
 
 
@@ -31,6 +36,10 @@ def document(data: bytes) -> tuple[Any, list[str]]:
     text = _text(data)
     if not re.search(r"^\s*0\s*\n\s*SECTION\s*$", text[:100_000], re.MULTILINE):
         raise InputError("this is no DXF file: no SECTION begins in it", "dxf-broken")
+    if len(re.findall(r"\n *10\n", text)) > MAX_POINTS:  # 10 is the x of a point
+        raise InputError(
+            "the drawing has too many points; keep only the lines of the grid", "too-large"
+        )
     return _ascii(text)
 
 
@@ -64,27 +73,55 @@ def _recovered(text: str, why: Exception) -> tuple[Any, list[str]]:
     """Read what can be read of a damaged file, as text."""
     from ezdxf import recover
 
+    text = _ended(text)
     # ezdxf looks for the encoding by itself: as escapes the letters are safe in each.
     stream = io.BytesIO("".join(map(_escaped, text)).encode("ascii"))
     try:
         found, audit = recover.read(stream, errors="replace")
     except Exception as error:  # a damaged file fails in any way
-        raise InputError(f"the DXF file is damaged: {_first_line(error)}", "dxf-broken") from None
-    losses = [*audit.errors, *audit.fixes]
-    messages = [f"The file is damaged ({_first_line(why)}); read is what could be repaired."]
-    messages += [f"Repaired: {_first_line(loss.message)}" for loss in losses[:5]]
-    if len(losses) > 5:
-        messages.append(f"{len(losses) - 5} more places were repaired.")
+        raise InputError(f"the DXF file is damaged: {_reason(error)}", "dxf-broken") from None
+    if not len(found.modelspace()):
+        raise InputError(f"the DXF file is damaged: {_reason(why)}", "dxf-broken")
+    messages = [f"The file is damaged ({_reason(why)}); what could be repaired is read."]
+    losses = [entry.message for entry in (*audit.errors, *audit.fixes) if entry.code in _LOSSES]
+    if losses:
+        messages.append(
+            f"{len(losses)} things of the damaged file are left out or mended, such as this:"
+            f" {_first_line(losses[0])}."
+        )
     return found, messages
+
+
+def _ended(text: str) -> str:
+    """End a file that is cut off before the thing in which it breaks off.
+
+    Half a line would be read as one that ends at the origin.
+    """
+    if re.search(r"\n\s*0\s*\n\s*EOF\s*$", text):
+        return text
+    lines = text.split("\n")[:-1]  # the last one may be cut
+    last = len(lines) - len(lines) % 2 - 2
+    while last > 0 and lines[last].strip() != "0":
+        last -= 2
+    return "\n".join([*lines[:last], "0", "ENDSEC", "0", "EOF", ""])
 
 
 def _escaped(letter: str) -> str:
     return letter if letter.isascii() else f"\\U+{min(ord(letter), 0xFFFD):04X}"
 
 
+def _reason(error: Exception) -> str:
+    """Return what ezdxf says about a file; what it stumbles over by chance helps nobody."""
+    from ezdxf.lldxf.const import DXFStructureError
+
+    if isinstance(error, DXFStructureError):
+        return _first_line(error)
+    return "its parts do not fit together"
+
+
 def _first_line(error: object) -> str:
-    lines = str(error).strip().splitlines()
-    return lines[0].removeprefix("DXFStructureError: ").rstrip(".") if lines else "no end"
+    line = (str(error).strip().splitlines() or [""])[0]
+    return line.removeprefix("DXFStructureError: ").rstrip(".")
 
 
 def _text(data: bytes) -> str:

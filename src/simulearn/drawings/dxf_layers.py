@@ -48,7 +48,7 @@ class Layers:
             frozen, off = layer.is_frozen(), layer.is_off()
             hidden = "its layer is frozen" if frozen else "its layer is off" if off else ""
             colour = _hex(layer.rgb) if layer.rgb else _indexed(abs(layer.dxf.color)) or _PEN
-            self._states[layer.dxf.name.lower()] = LayerState(colour, hidden, frozen)
+            self._states[plain(layer.dxf.name).lower()] = LayerState(colour, hidden, frozen)
 
     def state(self, name: str) -> LayerState:
         """Return a layer's state; one that is missing in the table is seen, in black."""
@@ -61,14 +61,30 @@ class Layers:
             entity: of ezdxf.
             inherited: from the block reference that it belongs to.
         """
-        layer = str(entity.dxf.get("layer", "0"))
+        layer = layer_of(entity)
         layer = inherited.layer if layer == "0" else layer
         if entity.dxf.hasattr("true_color"):
             return Inherited(layer, _hex(entity.rgb))
-        index = entity.dxf.get("color", _BY_LAYER)
+        index = entity.dxf.color if entity.dxf.hasattr("color") else _BY_LAYER
         if index == _BY_BLOCK:
             return Inherited(layer, inherited.colour)
         return Inherited(layer, _indexed(index) or self.state(layer).colour)
+
+
+def plain(name: str) -> str:
+    """Return a name with its escapes for letters replaced by the letters."""
+    from ezdxf.lldxf.encoding import decode_dxf_unicode, decode_mif_to_unicode
+
+    if "\\" in name:
+        name = decode_mif_to_unicode(decode_dxf_unicode(name))
+    return name.encode("utf-8", "replace").decode("utf-8")
+
+
+def layer_of(entity: Any) -> str:
+    """Return the name of the layer that an entity names itself."""
+    if not entity.dxf.hasattr("layer"):  # of a kind that ezdxf does not know
+        return plain(str(entity.graphic_properties().get("layer", "0")))
+    return plain(str(entity.dxf.layer))
 
 
 def _indexed(index: int) -> str | None:

@@ -84,7 +84,13 @@ def parts(entity: Any) -> list[Part]:
     Raises:
         LeftOutError: it has none.
     """
-    return list(READERS[entity.dxftype()](entity))
+    needed = _NEEDED.get(entity.dxftype(), ())
+    if not all(entity.dxf.hasattr(name) for name in needed):
+        raise LeftOutError("is damaged")
+    found = list(READERS[entity.dxftype()](entity))
+    if not found:
+        raise LeftOutError("has no length")
+    return found
 
 
 def points_of(vertices: Iterable[Any]) -> Points:
@@ -118,7 +124,7 @@ def _polyline(entity: Any) -> Iterator[Part]:
     frame = 16  # flag of a vertex that only controls a spline
     vertices = [v.dxf for v in entity.vertices if not v.dxf.flags & frame]
     if not vertices:
-        raise LeftOutError("has no length")
+        return
     spatial = entity.is_3d_polyline
     if entity.dxf.flags & entity.SPLINE_FIT_VERTICES_ADDED:
         points = points_of(v.location for v in vertices)
@@ -211,6 +217,14 @@ def _spline(entity: Any) -> Iterator[Part]:
     else:
         yield Part(None, entity.dxftype(), curve.flatten)
 
+
+# Without these ezdxf would take the origin, or one.
+_NEEDED = {
+    "LINE": ("start", "end"),
+    "ARC": ("center", "radius", "start_angle", "end_angle"),
+    "CIRCLE": ("center", "radius"),
+    "ELLIPSE": ("center", "major_axis"),
+}
 
 READERS: dict[str, Callable[[Any], Iterator[Part]]] = {
     "LINE": _line,

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from simulearn.drawings import dxf_shapes
-from simulearn.drawings.collecting import MAX_DEPTH, Collected, Matrix
+from simulearn.drawings.collecting import MAX_DEPTH, Collected, Matrix, exploded
 from simulearn.drawings.drawing import Points
-from simulearn.drawings.dxf_layers import Inherited, Layers
+from simulearn.drawings.dxf_layers import Inherited, Layers, layer_of, plain
 from simulearn.errors import InputError
 
 
@@ -29,12 +29,20 @@ class Walk:
 
     def run(self) -> None:
         """Read the model space; count what is in paper space."""
+        self.found.refuse_above(exploded("*Model_Space", self._contents, {}))
         self._layout(self._document.modelspace(), np.eye(4), Inherited(), ())
         for layout in self._document.layouts:
             if layout.is_any_paperspace:
                 for entity in layout:
                     if entity.dxftype() != "VIEWPORT":
-                        self._leave(entity, entity.dxf.get("layer", "0"), "is in paper space")
+                        self._leave(entity, layer_of(entity), "is in paper space")
+
+    def _contents(self, name: str) -> tuple[int, list[tuple[str, int]]]:
+        """Count what a block holds, for `exploded`."""
+        block = self._document.blocks.get(name)
+        inserts = [e for e in block or () if e.dxftype() == "INSERT" and e.dxf.hasattr("name")]
+        placed = [(e.dxf.name.lower(), _rows(e) * _columns(e)) for e in inserts]
+        return len(block or ()), placed
 
     def _layout(
         self, layout: Any, matrix: Matrix, inherited: Inherited, inside: tuple[str, ...]
@@ -64,7 +72,7 @@ class Walk:
         seen = self._layers.seen(entity, inherited)
         state = self._layers.state(seen.layer)
         kind = entity.dxftype()
-        if entity.dxf.get("invisible", 0):
+        if entity.dxf.hasattr("invisible") and entity.dxf.invisible:
             self._leave(entity, seen.layer, "is hidden")
         elif kind == "INSERT" and not state.frozen:
             # A layer that is off hides its own entities only, not what blocks on it hold.
@@ -93,11 +101,12 @@ class Walk:
         """Read a block where a reference places it, once for each row and column."""
         for attribute in insert.attribs:
             self._leave(attribute, seen.layer, dxf_shapes.REASONS["ATTRIB"])
-        name, block = str(insert.dxf.name), insert.block()
+        name, block = plain(str(insert.dxf.name)), insert.block()
         if block is None:
             self._leave(insert, seen.layer, f"its block {name} is not in the file")
         elif insert.is_xref():
-            self._leave(insert, seen.layer, f"its block {name} is another file (XREF)")
+            path = block.block.dxf.get("xref_path", "")
+            self._leave(insert, seen.layer, f"its block {name} is another file (XREF): {path}")
         elif name.lower() in map(str.lower, inside):
             self._leave(insert, seen.layer, f"its block {name} contains itself")
         elif len(inside) >= MAX_DEPTH:
@@ -113,15 +122,12 @@ class Walk:
     def _offsets(self, insert: Any) -> Iterator[Points]:
         """Offsets of a reference's rows and columns, which are turned with it but not scaled."""
         dxf = insert.dxf
-        rows = dxf.row_count if dxf.row_spacing else 1
-        columns = dxf.column_count if dxf.column_spacing else 1
-        self.found.visit(rows * columns)
         turn = np.radians(dxf.rotation)
         along = np.array([np.cos(turn), np.sin(turn)]) * dxf.column_spacing
         across = np.array([-np.sin(turn), np.cos(turn)]) * dxf.row_spacing
         to_world = insert.ocs().to_wcs
-        for row in range(rows):
-            for column in range(columns):
+        for row in range(_rows(insert)):
+            for column in range(_columns(insert)):
                 x, y = row * across + column * along
                 yield np.array(tuple(to_world((float(x), float(y), 0.0))))
 
@@ -134,3 +140,11 @@ class Walk:
 
     def _leave(self, entity: Any, layer: str, reason: str) -> None:
         self.found.leave(entity.dxftype(), layer, reason)
+
+
+def _rows(insert: Any) -> int:
+    return int(insert.dxf.row_count) if insert.dxf.row_spacing else 1
+
+
+def _columns(insert: Any) -> int:
+    return int(insert.dxf.column_count) if insert.dxf.column_spacing else 1

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.drawings.collecting import TOO_LARGE
 from simulearn.drawings.drawing import Points
 
 # More chords than a curve in a drawing of beams can need.
@@ -28,6 +29,20 @@ class Nurbs:
     knots: NDArray[np.float64]
     points: NDArray[np.float64]
 
+    def __post_init__(self) -> None:
+        """Refuse what is no curve.
+
+        Raises:
+            ValueError: its numbers do not fit together.
+        """
+        fits = len(self.knots) == len(self.points) + self.degree + 1 > 2 * self.degree > 0
+        numbers = np.concatenate((self.knots, self.points.ravel()))
+        if not (fits and (np.abs(numbers) < TOO_LARGE).all()):
+            raise ValueError("the numbers of a spline do not fit together")
+        first, last = self._ends()
+        if (np.diff(self.knots) < 0).any() or first >= last or (self.points[:, 3] <= 0).any():
+            raise ValueError("the numbers of a spline do not fit together")
+
     def straight(self, tolerance: float) -> Points | None:
         """Return the corners of a curve that is a polyline, or None for one that is curved.
 
@@ -42,7 +57,9 @@ class Nurbs:
         if not all(_is_straight(control[a : b + 1], tolerance) for a, b in pairwise(corners)):
             return None
         found = control[corners]
-        found[[0, -1]] = self._at(np.array(self._ends()))
+        first, last = self._ends()
+        if first > self.knots[0] or last < self.knots[-1]:  # it does not reach its last points
+            found[[0, -1]] = self._at(np.array([first, last]))
         return found
 
     def flatten(self, distance: float) -> Points:

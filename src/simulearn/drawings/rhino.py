@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from simulearn.drawings.cad_units import likely_unit, unit
-from simulearn.drawings.collecting import MAX_DEPTH, Collected, Matrix
+from simulearn.drawings.collecting import MAX_DEPTH, Collected, Matrix, exploded
 from simulearn.drawings.drawing import Drawing, Points
 from simulearn.drawings.nurbs import Nurbs
 from simulearn.drawings.rhino_file import contents
@@ -59,6 +59,8 @@ def read_3dm(data: bytes) -> Drawing:
     walk.run()
     system = model["unit"]
     named = unit(_UNITS[system], f"the file's unit is {system}") if system in _UNITS else None
+    if model["lost"]:
+        walk.found.say(f"The file is damaged: {model['lost']} of its objects could not be read.")
     if system == "CustomUnits":
         walk.found.say("The file has a custom unit, whose length cannot be read.")
     names = ("mm", "cm", "m", "in", "ft")
@@ -87,9 +89,22 @@ class _Walk:
     def run(self) -> None:
         """Read all that is placed in the model."""
         members = {member for block in self._blocks.values() for member in block["objects"]}
-        for item in self._all:
-            if item["mode"] != "InstanceDefinitionObject" and item["id"] not in members:
-                self._thing(item, np.eye(4), None, ())
+        placed = [
+            item
+            for item in self._all
+            if item["mode"] != "InstanceDefinitionObject" and item["id"] not in members
+        ]
+        sizes: dict[str, int] = {}
+        blocks = [item["block"] for item in placed if "block" in item]
+        self.found.refuse_above(sum(exploded(name, self._contents, sizes) for name in blocks))
+        for item in placed:
+            self._thing(item, np.eye(4), None, ())
+
+    def _contents(self, block: str) -> tuple[int, list[tuple[str, int]]]:
+        """Count what a block holds, for `exploded`."""
+        members = self._blocks[block]["objects"] if block in self._blocks else []
+        things = [self._objects[member] for member in members if member in self._objects]
+        return len(things), [(thing["block"], 1) for thing in things if "block" in thing]
 
     def _thing(
         self, item: dict[str, Any], matrix: Matrix, parent: str | None, inside: tuple[str, ...]
@@ -123,7 +138,12 @@ class _Walk:
             return
         place = f" in block {self._blocks[inside[-1]]['name']}" if inside else ""
         where = f"{kind} {item['name'] or item['id'][:8]}{place}"
-        for name, part in self._parts(item["parts"]):
+        try:
+            parts = self._parts(item["parts"])
+        except ValueError:
+            self.found.leave(kind, layer, "is damaged")
+            return
+        for name, part in parts:
             if isinstance(part, Nurbs):
                 self.found.curve(part.flatten, matrix, name, layer, colour, where)
             else:

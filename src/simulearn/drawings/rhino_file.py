@@ -4,20 +4,25 @@ import json
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from simulearn.drawings import collecting
 from simulearn.errors import InputError
 
 TIMEOUT = 30.0  # s; a file as large as is taken is read in far less
 
-_BEGINNING = b"3D Geometry File Format "
+_BEGINNING = b"3D Geometry File Format "  # then the version, eight letters
+
+# Kinds of chunks: the table of objects, one object in it; in short ones the length is the value.
+_OBJECTS, _OBJECT, _SHORT = 0x10000013, 0x20008070, 0x80000000
 
 
 def contents(data: bytes) -> dict[str, Any]:
     """Return what a file holds, as `rhino_process` writes it.
+
+    `lost` is added: how many objects rhino3dm passed over without a word, as they are damaged.
 
     Args:
         data: the file.
@@ -35,19 +40,41 @@ def contents(data: bytes) -> dict[str, Any]:
         source, target = Path(folder, "drawing.3dm"), Path(folder, "contents.json")
         source.write_bytes(data)
         _run(source, target)
-        if not target.exists():
-            raise InputError(
-                "the Rhino file is damaged; open it in Rhino, run Audit and save it anew",
-                "3dm-broken",
-            )
-        found: dict[str, Any] = json.loads(target.read_text(encoding="utf-8"))
+        found: dict[str, Any] = {}
+        if target.exists():
+            found = json.loads(target.read_text(encoding="utf-8"))
     if "too_large" in found:
         raise InputError(
-            f"the drawing has more than {collecting.MAX_SEGMENTS:,} line segments; keep only the"
-            " lines of the grid",
+            "the drawing has too many objects or points; keep only the lines of the grid",
             "too-large",
         )
-    return found
+    count = len(found.get("objects", ()))
+    lost = max(_objects(data) - count, 0)
+    if not found or lost > count == 0:
+        raise InputError(
+            "the Rhino file is damaged; open it in Rhino, run Audit and save it anew", "3dm-broken"
+        )
+    return found | {"lost": lost}
+
+
+def _objects(data: bytes) -> int:
+    """Return how many objects a file holds; those that come after a broken chunk are not seen."""
+    version = data[len(_BEGINNING) : 32].strip()
+    size = 8 if version.isdigit() and int(version) >= 50 else 4  # bytes of a length
+    for kind, start, end in _chunks(data, 32, len(data), size):
+        if kind == _OBJECTS:
+            return sum(1 for kind, _, _ in _chunks(data, start, end, size) if kind == _OBJECT)
+    return 0
+
+
+def _chunks(data: bytes, start: int, end: int, size: int) -> Iterator[tuple[int, int, int]]:
+    """Return the chunks that follow each other in a file: kind, and where its contents are."""
+    while start + 4 + size <= end:
+        kind = int.from_bytes(data[start : start + 4], "little")
+        length = int.from_bytes(data[start + 4 : start + 4 + size], "little")
+        start += 4 + size
+        yield kind, start, start + length
+        start += 0 if kind & _SHORT else length
 
 
 def _run(source: Path, target: Path) -> None:
@@ -66,5 +93,6 @@ def _run(source: Path, target: Path) -> None:
         )
     except subprocess.TimeoutExpired:
         raise InputError(
-            f"the Rhino file is damaged: it could not be read in {TIMEOUT:.0f} s", "3dm-broken"
+            f"the Rhino file is damaged or too large: it could not be read in {TIMEOUT:.0f} s",
+            "3dm-broken",
         ) from None

@@ -11,7 +11,8 @@ from typing import Any
 
 import rhino3dm
 
-MAX_POINTS = 1_000_000
+MAX_POINTS = 500_000
+MAX_OBJECTS = 200_000
 MAX_BYTES = 3 << 30
 MAX_NESTING = 32
 
@@ -49,6 +50,8 @@ def _limit_memory() -> None:
 
 def _contents(model: Any) -> dict[str, Any]:
     reader = _Reader()
+    if len(model.Objects) > MAX_OBJECTS:
+        raise TooLargeError
     return {
         "unit": model.Settings.ModelUnitSystem.name,
         "tolerance": model.Settings.ModelAbsoluteTolerance,
