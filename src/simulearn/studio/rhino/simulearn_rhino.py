@@ -1,9 +1,9 @@
 #! python3
 """SimuLearn in Rhino 8: the shape that picked curves take in hot water, drawn into the model.
 
-Run it with Rhino's command ScriptEditor, or with _-ScriptEditor _Run and the path of this file. It
-asks the studio, which must run on this machine: start it with `simulearn studio`. Nothing has to be
-installed in Rhino. All that touches Rhino is in the class Rhino8, at the end.
+Run it with Rhino's command ScriptEditor. It asks the studio, which must run on this machine: start
+it with `simulearn studio`. Nothing has to be installed in Rhino. All that touches Rhino is in the
+class Rhino8, at the end.
 
 Actuators are read from the name of a curve's layer, such as `top 0.5`, `bottom 75%` or `passive`,
 or from the curve's user text `actuator`, which goes before: `0.5`, `-0.5` or `top 0.5`.
