@@ -154,7 +154,10 @@ def drawing(lines: list, layers: list[str] | None = None, **more: object) -> Dra
     """Return a drawing of plain lines, in mm unless another unit is given."""
     spatial = [np.column_stack([line, np.zeros(len(line))]) for line in map(np.asarray, lines)]
     names = layers or [""] * len(lines)
-    drawn = [Line(p, name, where=f"line {k}") for k, (p, name) in enumerate(zip(spatial, names, strict=False))]
+    drawn = [
+        Line(points, name, where=f"line {k}")
+        for k, (points, name) in enumerate(zip(spatial, names, strict=True))
+    ]
     return Drawing("test", drawn, **{"plain": True, **more})
 
 

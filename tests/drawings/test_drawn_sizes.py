@@ -84,7 +84,7 @@ def test_the_width_goes_before_every_unit():
 
 
 def test_a_drawing_far_away_is_moved_and_that_is_told():
-    result = grid_of(drawing([[*line, 500000.0, -3000000.0] for line in l_grid()]))
+    result = grid_of(drawing([line + np.array([5e5, -3e6]) for line in l_grid()]))
     assert same(result.grid, l_grid())
     assert codes(result)["moved"].startswith("moved by -500000, 3e+06 mm")
 
@@ -127,7 +127,7 @@ def test_noise_in_the_height_is_nothing():
 
 def test_lines_that_are_not_flat_are_refused_with_the_place():
     lines = in_space((1, 0, 0), (0, 1, 0)).lines
-    lines[3] = Line([*lines[3].points, [0, 0, 0], [0, 0, 30]])
+    lines[3] = Line(lines[3].points + np.array([[0, 0, 0], [0, 0, 30]]))
     bent = drawing([]).__class__("test", lines, plain=True)
     with pytest.raises(InputError, match=r"do not lie in one plane: at \[.*\] mm one is") as error:
         grid_of(bent)
@@ -149,7 +149,7 @@ def test_curves_become_chords_only_where_that_is_asked_for():
     result = grid_of(chord, Options(flatten=2))
     assert len(result.grid.beams) == len(arc(2))
     assert {mend.code: mend.count for mend in result.mends} == {"flattened": 1}
-    with pytest.raises(InputError, match="only curves .1 x ARC. and no straight lines") as error:
+    with pytest.raises(InputError, match=r"only curves .1 x ARC. and no straight lines") as error:
         grid_of(drawing([], curves=[Curve("ARC", arc)]))
     assert error.value.code == "curves-only"
 
@@ -167,3 +167,21 @@ def test_options_that_make_no_sense(option):
     for value in (0, -1, float("nan"), float("inf")):
         with pytest.raises(InputError, match=f"the {option} is .* mm; it is more than 0"):
             grid_of(drawing(l_grid()), Options(**{option: value}))
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e300])
+def test_a_coordinate_that_makes_no_sense(value):
+    with pytest.raises(InputError, match=r"a line has a point at \[.*, 0, 0\]; coordinates are"):
+        grid_of(drawing([*l_grid(), [[0, 0], [value, 0]]]))
+
+
+def test_lines_of_no_length():
+    with pytest.raises(InputError, match="all lines have the length 0") as error:
+        grid_of(drawing([[[0, 0], [0, 0]], [[5, 5], [5, 5]]]))
+    assert error.value.code == "no-lines"
+
+
+def test_what_is_always_mended_is_told():
+    result = grid_of(drawing([*l_grid(), l_grid()[0]]), Options(without=frozenset({"double"})))
+    assert same(result.grid, l_grid())
+    assert codes(result)["mend-needed"].startswith("double: a grid has one beam between two")

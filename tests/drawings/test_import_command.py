@@ -33,7 +33,7 @@ def test_a_drawing_becomes_a_grid_file(tmp_path, monkeypatch, capsys):
 
 def test_the_machine_form(tmp_path, monkeypatch, capsys):
     file, grid = tmp_path / "beams.json", tmp_path / "grid.json"
-    file.write_text(json.dumps({"a": BEAMS, "b": [[[0, 0], [-20, -20]]]}))
+    file.write_text(json.dumps({"a": BEAMS, "b": [[[0, 0], [-9, -9]]]}))
     code, out, _ = run(monkeypatch, capsys, file, "-o", grid, "--json")
     data = json.loads(out)
     assert code == 0

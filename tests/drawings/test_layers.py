@@ -113,10 +113,10 @@ def test_only_the_layers_that_are_named_are_read():
     assert [layer.taken for layer in result.layers] == [True, False, False]
     texts = [message.message for message in result.messages]
     assert '1 line on the layer "Notes" left out: it is not among those to read' in texts
-    both = grid_of(drawing(lines, names), Options(layers=("BEAMS", "frame", "plan")))
+    both = grid_of(drawing(lines, names), Options(layers=("BEAMS, frame", "plan")))
     assert [layer.taken for layer in both.layers] == [True, False, True]
     with pytest.raises(
-        InputError, match='no layer "walls" with lines; .* "Beams", "Notes"'
+        InputError, match=r'no layer "walls" with lines; .* "Beams", "Notes"'
     ) as error:
         grid_of(drawing(lines, names), Options(layers=("walls",)))
     assert error.value.code == "layers-unknown"

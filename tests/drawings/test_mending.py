@@ -26,10 +26,10 @@ from simulearn.drawings.mending import MENDS
 from simulearn.errors import InputError
 
 STEPS = {
+    "stubs": with_stubs,
     "ends": lambda lines, random: ends_moved(lines, random, 0.6),
     "doubled": doubled,
     "overlapped": overlapped,
-    "stubs": with_stubs,
     "crumbs": with_crumbs,
     "shuffled": shuffled,
     "noise": noisy,
@@ -46,12 +46,12 @@ def codes(result):
     steps=st.sets(st.sampled_from(sorted(STEPS))),
     angle=st.floats(0, 6.3),
 )
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=25, deadline=None, derandomize=True)
 def test_a_messy_drawing_becomes_the_grid_that_was_meant(net, seed, steps, angle):
     clean = turned(NETS[net](), angle)
     random = np.random.default_rng(seed)
     lines = clean
-    for step in STEPS:  # in this order: stubs begin where beams end
+    for step in STEPS:  # in this order: stubs begin at joints
         if step in steps:
             lines = STEPS[step](lines, random)
     result = grid_of(drawing(lines))
@@ -202,6 +202,6 @@ def test_lines_without_end_are_refused_in_time():
     fan = [
         [[500 * np.cos(a), 500 * np.sin(a)], [-500 * np.cos(a), -500 * np.sin(a)]] for a in angles
     ]
-    with pytest.raises(InputError, match="at more than 1,000,000 places") as error:
+    with pytest.raises(InputError, match="at more than 300,000 places") as error:
         grid_of(drawing(fan))
     assert error.value.code == "too-large"

@@ -67,7 +67,7 @@ def import_(
         flatten=flatten,
         actuators=actuators,
         tolerance=tolerance,
-        without=frozenset(without or ()),
+        without=frozenset(code.strip() for codes in without or () for code in codes.split(",")),
         material=material,
     )
     data = _contents(file)

@@ -1,6 +1,7 @@
 """Pieces that lie on each other become one: lines drawn twice, and pieces that overlap.
 
-The axis of what they become is the straight line nearest to all of them, by least squares.
+The axis of what they become is the straight line that fits them by least squares, in which pieces
+that are off the others count less.
 """
 
 from dataclasses import dataclass
@@ -10,11 +11,16 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from simulearn.drawings.pieces import EXACT
+
 Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 # The sine of the angle up to which pieces lie along each other.
 ALIKE = 0.1
+# An axis is fitted so often; each time pieces that are off it count less, so that it follows those
+# that agree.
+ROUNDS = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +66,10 @@ def united(
     rank = np.argsort(np.argsort(first))
     run = rank[group]
     alone = np.bincount(run)[run] == 1
-    runs, _ = _fitted(ends, run)
+    heft = np.ones(len(ends))
+    for _ in range(ROUNDS):
+        runs, aside = _fitted(ends, run, heft)
+        heft = 1 / (aside**2 + (EXACT * tolerance) ** 2)
     runs[run[alone]] = ends[alone]
     again = np.zeros(len(ends), bool)
     again[b[double & (run[a] == run[b])]] = True
@@ -100,10 +109,15 @@ def _groups(count: int, a: Indices, b: Indices) -> Indices:
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
-def _fitted(ends: Numbers, group: Indices) -> tuple[Numbers, Numbers]:
-    """Return for each group the straight piece that fits it (G, 2, 2), and the largest deviation.
+def _fitted(ends: Numbers, group: Indices, heft: Numbers) -> tuple[Numbers, Numbers]:
+    """Return for each group the straight piece that fits it (G, 2, 2), and how far pieces are off.
 
-    Pieces count by the cubes of their lengths: short ones hardly say where the axis is.
+    Pieces count by the cubes of their lengths, too: short ones hardly say where the axis is.
+
+    Args:
+        ends: (P, 2, 2) mm.
+        group: (P,) numbers from 0.
+        heft: (P,) how much each piece counts.
     """
     count = int(group.max()) + 1
     along = ends[:, 1] - ends[:, 0]
@@ -112,7 +126,7 @@ def _fitted(ends: Numbers, group: Indices) -> tuple[Numbers, Numbers]:
     def total(values: Numbers) -> Numbers:
         return np.asarray(np.bincount(group, values, count), np.float64)
 
-    heft = length**3
+    heft = heft * length**3
     weight = total(heft)
     middle = ends.mean(axis=1)
     centre = np.stack([total(heft * middle[:, k]) / weight for k in (0, 1)], axis=1)
@@ -126,18 +140,17 @@ def _fitted(ends: Numbers, group: Indices) -> tuple[Numbers, Numbers]:
     apart = ends - centre[group][:, None]
     way, normal = axis[group][:, None], np.stack([-axis[:, 1], axis[:, 0]], axis=1)[group][:, None]
     place, aside = (apart * way).sum(axis=2), abs((apart * normal).sum(axis=2)).max(axis=1)
-    low, high, off = np.full(count, np.inf), np.full(count, -np.inf), np.zeros(count)
+    low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, group, place.min(axis=1))
     np.maximum.at(high, group, place.max(axis=1))
-    np.maximum.at(off, group, aside)
     reach = np.stack([low, high], axis=1)[..., None]
-    return centre[:, None] + reach * axis[:, None], off
+    return centre[:, None] + reach * axis[:, None], aside
 
 
 def _loose(ends: Numbers, group: Indices, tolerance: float) -> list[Indices]:
     """Return the pieces of each group that no straight line fits within the tolerance."""
-    off = _fitted(ends, group)[1]
-    return [np.flatnonzero(group == k) for k in np.flatnonzero(off > tolerance).tolist()]
+    off = _fitted(ends, group, np.ones(len(ends)))[1] > tolerance
+    return [np.flatnonzero(group == k) for k in np.unique(group[off]).tolist()]
 
 
 def _split(ends: Numbers, tolerance: float) -> Indices:

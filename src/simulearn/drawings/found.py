@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.drawings.meetings import Stations, cross
+from simulearn.drawings.meetings import Stations
 from simulearn.drawings.pieces import EXACT
+from simulearn.grid.sketch import cross
 
 Numbers = NDArray[np.float64]
 

@@ -25,6 +25,13 @@ Numbers = NDArray[np.float64]
 
 # For a first look at a drawing without a unit: the tolerance as a part of its size.
 COARSE = 1 / 300
+# Coordinates beyond this, in any unit, are damaged.
+BEYOND = 1e12
+# What is mended whatever a person chooses, and why.
+ALWAYS = {
+    "crumb": "what is shorter than the tolerance has no place in a grid",
+    "double": "a grid has one beam between two joints",
+}
 # Where beams are oddly short the tolerance is at most this part of one.
 FINE = 0.1
 
@@ -112,7 +119,8 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
     lines = [line for line in drawing.lines if line.layer in taken]
     curves = [curve for curve in drawing.curves if curve.layer in taken]
     messages = [*_remarks(drawing, layers)]
-    if options.flatten is None:
+    flatten = None if "flattened" in options.without else options.flatten
+    if flatten is None:
         messages += curves_left_out(curves)
         if not lines:
             raise _nothing(drawing, curves)
@@ -123,7 +131,7 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
     size = measured(_polylines(lines, curves, None))
     unit, tolerance, odd_size = _unit(drawing, size, options)
     messages = [_unit_told(unit, size), *odd_size, *messages, *told]
-    chords = None if options.flatten is None else options.flatten / unit.mm
+    chords = None if flatten is None else flatten / unit.mm
     points = [unit.mm * points for points in _polylines(lines, curves, chords)]
     plane, turned = _in_plane(points, tolerance, options.without)
     meant = np.arange(len(points)) >= len(lines)
@@ -131,10 +139,16 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
     if not len(result.net.beams):
         text = f"all lines are shorter than the tolerance of {tolerance:g} mm"
         raise InputError(f"{text}; it can be less", "no-lines", "tolerance")
+    messages += [_always(code) for code in ALWAYS if code in options.without & set(result.places)]
     result.places.update(turned)
     if curves:
         result.places["flattened"] = np.stack([line[0] for line in plane[len(lines) :]])
     return _imported(result, drawing, unit, layers, messages, options.material)
+
+
+def _always(code: str) -> Message:
+    text = f"{code}: {ALWAYS[code]}, so this is done nevertheless"
+    return Message("mend-needed", code, text)
 
 
 def _check(options: Options) -> None:
@@ -193,16 +207,24 @@ def _polylines(
 
 
 def measured(lines: Sequence[Numbers]) -> Size:
-    """Return the size of polylines, each (n, 3), and the length of the middle beam in them."""
+    """Return the size of polylines, each (n, 3), and the length of the middle beam in them.
+
+    Raises:
+        InputError: a coordinate makes no sense, or all lines have no length.
+    """
     points = np.concatenate(lines)
     offsets = np.cumsum([0, *map(len, lines)])
-    extent = np.ptp(points, axis=0)
-    whole = float(np.linalg.norm(extent))
-    if not whole:
-        return Size(0.0, 0.0, 0.0)
+    far = ~(abs(points) < BEYOND).all(axis=1)
+    if far.any():
+        place = ", ".join(f"{value:g}" for value in points[far.argmax()])
+        text = f"a line has a point at [{place}]; coordinates are numbers below {BEYOND:g}"
+        raise InputError(text, "point", f"[{place}]")
+    whole = float(np.linalg.norm(np.ptp(points, axis=0)))
     plane = in_plane(points, COARSE * whole).points
     step = np.hypot(*np.diff(plane, axis=0).T)
     step = np.delete(step, offsets[1:-1] - 1)
+    if not step.any():
+        raise InputError("all lines have the length 0", "no-lines", "lines")
     usual = float(np.median(step[step > 0]))
     tolerance = min(COARSE * whole, usual / 20)
     parts = np.split(plane, offsets[1:-1])

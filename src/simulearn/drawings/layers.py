@@ -46,8 +46,8 @@ def layers_of(drawing: Drawing, patterns: Sequence[str]) -> list[LayerUse]:
 
     Args:
         drawing: as its reader returns it.
-        patterns: names or patterns with * and ? of those to read, in any case; none: all, or of
-            our own drawings the beams' axes alone.
+        patterns: names or patterns with * and ? of those to read, in any case; also several with
+            commas between them; none: all, or of our own drawings the beams' axes alone.
 
     Raises:
         InputError: a pattern fits no layer.
@@ -56,11 +56,16 @@ def layers_of(drawing: Drawing, patterns: Sequence[str]) -> list[LayerUse]:
     things: list[Line | Curve] = [*drawing.lines, *drawing.curves]
     for thing in things:
         colours.setdefault(thing.layer, Counter())[thing.colour] += 1
+    patterns = [
+        part
+        for pattern in patterns
+        for part in ([pattern] if any(_fits(n, pattern) for n in colours) else pattern.split(","))
+    ]
     for pattern in patterns:
         if not any(_fits(name, pattern) for name in colours):
             names = ", ".join(f'"{name}"' for name in list(colours)[:MOST_NAMED])
             more = ", ..." if len(colours) > MOST_NAMED else ""
-            text = f'there is no layer "{pattern}" with lines; the layers with lines are '
+            text = f'there is no layer "{pattern.strip()}" with lines; the layers with lines are '
             raise InputError(f"{text}{names or 'none'}{more}", "layers-unknown", pattern)
     own = not patterns and any(_first_name(name) == OWN for name in colours)
 

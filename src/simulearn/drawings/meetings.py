@@ -13,6 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from simulearn.drawings.pieces import EXACT
+from simulearn.grid.sketch import cross
 
 Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -160,9 +161,3 @@ def _meetings(
             runs.append(np.stack([one, other])[:, near])
             places.append(np.stack([np.where(end, length[one], 0.0), at])[:, near])
     return np.concatenate(runs, axis=1), np.concatenate(places, axis=1)
-
-
-def cross(a: Numbers, b: Numbers) -> Numbers:
-    """Return the cross products (n,) of vectors (n, 2) in the plane."""
-    product: Numbers = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return product

@@ -9,6 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.grid.sketch import cross
 
 Numbers = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -17,7 +18,9 @@ Indices = NDArray[np.int64]
 # conversions of units leave is less.
 EXACT = 0.01
 # More pieces that touch are no grid that can be computed; they are not even listed.
-MOST_PAIRS = 1_000_000
+MOST_PAIRS = 300_000
+# So many pairs whose boxes touch are tried.
+MOST_TRIED = 20_000_000
 # So many pairs at a time are sought, which bounds the memory.
 AT_ONCE = 500_000
 
@@ -149,23 +152,49 @@ def neighbours(ends: Numbers, reach: float) -> tuple[Indices, Indices]:
     Raises:
         InputError: there are too many.
     """
-    pairs = [np.zeros((2, 0), np.int64), *_near(shapely.linestrings(ends), reach)]
+    pairs = [np.zeros((2, 0), np.int64), *_near(ends, reach)]
     a, b = np.concatenate(pairs, axis=1)
     order = np.lexsort((b, a))
     return a[order], b[order]
 
 
-def _near(lines: NDArray[np.object_], reach: float) -> Iterator[NDArray[np.int64]]:
-    """Yield pairs (2, n) of lines within a reach of each other, a part of them at a time."""
-    tree = shapely.STRtree(lines)
-    begin, step, found = 0, 64, 0
-    while begin < len(lines):
-        pairs = tree.query(lines[begin : begin + step], "dwithin", reach)
+def _near(ends: Numbers, reach: float) -> Iterator[Indices]:
+    """Yield pairs (2, n) of pieces within a reach of each other, a part of them at a time."""
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    tree = shapely.STRtree(shapely.box(*low.T, *high.T))
+    wide = shapely.box(*(low - reach).T, *(high + reach).T)
+    begin, step, found, tried = 0, 64, 0, 0
+    while begin < len(ends):
+        pairs = tree.query(wide[begin : begin + step])
+        hits = pairs.shape[1]
         pairs[0] += begin
-        yield pairs[:, pairs[0] < pairs[1]]
-        found += pairs.shape[1] // 2
-        if found > MOST_PAIRS:
+        pairs = pairs[:, pairs[0] < pairs[1]]
+        pairs = pairs[:, _apart(ends[pairs[0]], ends[pairs[1]]) <= reach]
+        yield pairs
+        found, tried = found + pairs.shape[1], tried + hits
+        if found > MOST_PAIRS or tried > MOST_TRIED:
             text = f"the lines touch each other at more than {MOST_PAIRS:,} places"
+            if found <= MOST_PAIRS:
+                text = f"{len(ends):,} pieces of lines lie too close together"
             raise InputError(f"{text}; that is no grid that can be computed", "too-large")
         begin += step
-        step = max(1, min(4 * step, step * AT_ONCE // max(1, pairs.shape[1])))
+        step = max(1, min(4 * step, step * AT_ONCE // max(1, hits)))
+
+
+def _apart(a: Numbers, b: Numbers) -> Numbers:
+    """Return the distances (n,) of straight pieces (n, 2, 2) from others."""
+    sides = [
+        cross(one[:, 1] - one[:, 0], other[:, k] - one[:, 0])
+        for one, other in ((a, b), (b, a))
+        for k in (0, 1)
+    ]
+    across = (sides[0] * sides[1] < 0) & (sides[2] * sides[3] < 0)
+    apart = [_to_point(one, other[:, k]) for one, other in ((a, b), (b, a)) for k in (0, 1)]
+    return np.where(across, 0.0, np.minimum.reduce(apart))
+
+
+def _to_point(piece: Numbers, point: Numbers) -> Numbers:
+    """Return the distances (n,) of points (n, 2) from straight pieces (n, 2, 2)."""
+    along, to = piece[:, 1] - piece[:, 0], point - piece[:, 0]
+    place = np.clip((along * to).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
+    return np.hypot(*(to - place[:, None] * along).T)

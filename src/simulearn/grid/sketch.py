@@ -80,15 +80,16 @@ def _crossings(pieces: Numbers) -> Numbers:
     order = np.lexsort((b, a))
     a, b = pieces[a[order]], pieces[b[order]]
     along, across, apart = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0], b[:, 0] - a[:, 0]
-    turn = _cross(along, across)
+    turn = cross(along, across)
     with np.errstate(divide="ignore", invalid="ignore"):
-        s, t = _cross(apart, across) / turn, _cross(apart, along) / turn
+        s, t = cross(apart, across) / turn, cross(apart, along) / turn
     meet = (turn != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
     points: Numbers = a[meet, 0] + s[meet, None] * along[meet]
     return points
 
 
-def _cross(a: Numbers, b: Numbers) -> Numbers:
+def cross(a: Numbers, b: Numbers) -> Numbers:
+    """Return the cross products (n,) of vectors (n, 2) in the plane."""
     product: Numbers = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     return product
 
