@@ -37,7 +37,7 @@ OTHERS = (
     (rb"\xd0\xcf\x11\xe0", "an old Office or CAD file; save lines as DXF or SVG"),
 )
 # Readers' packages, which `pip install 'simulearn[rhino]'` brings.
-PACKAGES = {"ezdxf": "DXF", "rhino3dm": "Rhino (.3dm)", "svgelements": "SVG"}
+PACKAGES = {"ezdxf": "DXF", "rhino3dm": "Rhino (.3dm)", "svgelements": "SVG", "tinycss2": "SVG"}
 DXF = re.compile(r"\s*(?:999[ \t]*\n.*\n\s*)*0[ \t]*\n[ \t]*SECTION\b", re.IGNORECASE)
 SVG = re.compile(r"<(?:[A-Za-z_][\w.-]*:)?svg[\s>/]")
 OBJ = re.compile(r"^[ \t]*v[ \t]+[-+.\d]", re.MULTILINE)

@@ -21,9 +21,9 @@ class Bezier(NamedTuple):
     controls: tuple[Point, ...]
 
     @property
-    def begin(self) -> Point:
-        """Where it begins."""
-        return self.controls[0]
+    def around(self) -> tuple[Point, ...]:
+        """Points that it lies between."""
+        return self.controls
 
     @property
     def end(self) -> Point:
@@ -66,8 +66,15 @@ class Arc(NamedTuple):
     v: Point
     start: float
     sweep: float
-    begin: Point
     end: Point
+
+    @property
+    def around(self) -> tuple[Point, ...]:
+        """Points that it lies between."""
+        (x, y), (a, b), (c, d) = self.centre, self.u, self.v
+        return tuple(
+            (x + s * a + t * c, y + s * b + t * d) for s in (-1.0, 1.0) for t in (-1.0, 1.0)
+        )
 
     def flatten(self, matrix: Matrix, chord: float) -> NDArray[np.float64]:
         """Return points (n, 2) after a transform, chords no farther than `chord` from it."""

@@ -11,8 +11,21 @@ from simulearn.drawings.svg.curves import Matrix
 INCH = 25.4
 PHYSICAL = {"mm": 1.0, "cm": 10.0, "in": INCH, "pt": INCH / 72, "pc": INCH / 6, "q": 0.25}
 _LENGTH = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*([a-z%]*)\s*", re.I)
+_ARGUMENT = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)([a-z%]*)", re.I)
 _FUNCTION = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")
-_TRANSFORMS = "matrix translate translatex translatey scale scalex scaley rotate skewx skewy skew"
+_TRANSFORMS = {  # how many numbers each may have
+    "matrix": (6,),
+    "translate": (1, 2),
+    "translatex": (1,),
+    "translatey": (1,),
+    "scale": (1, 2),
+    "scalex": (1,),
+    "scaley": (1,),
+    "rotate": (1, 3),
+    "skewx": (1,),
+    "skewy": (1,),
+    "skew": (1, 2),
+}
 IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 
 
@@ -74,32 +87,44 @@ class Viewport:
         """Return a list of transforms as one matrix, or None where it cannot be read."""
         if text.strip().lower() in ("", "none"):
             return IDENTITY
-        plain = []
+        functions: list[str] = []
         place = 0
         while match := _FUNCTION.match(text, place):
             place = match.end()
-            name, numbers = match[1], []
-            if name.lower() not in _TRANSFORMS.split():
+            name, numbers = match[1].lower(), self._arguments(match[1].lower(), match[2], font_size)
+            if len(numbers) not in _TRANSFORMS.get(name, ()):
                 return None
-            for number in re.split(r"\s*,\s*|\s+(?=[^,])|(?<=[\d.])(?=[-+])", match[2].strip()):
-                if re.fullmatch(r"[-+\d.e]+(deg|grad|rad|turn)?", number, re.I):
-                    numbers.append(number)
-                elif math.isfinite(value := self.length(number, "", font_size)) and (
-                    "translate" in name.lower() and "%" not in number
-                ):
-                    numbers.append(repr(value))
-                else:
-                    return None
-            plain.append(f"{name}({','.join(numbers)})")
+            if name == "skew" and len(numbers) == 1:
+                numbers.append("0")
+            functions.append(f"{name}({','.join(numbers)})")
         if text[place:].strip(" \t\r\n,;"):
             return None
         try:
-            matrix = svgelements.Matrix(" ".join(plain))
+            matrix = svgelements.Matrix(" ".join(functions))
             values = [float(matrix[k]) for k in range(6)]
         except (ArithmeticError, IndexError, TypeError, ValueError):
             return None
         a, b, c, d, e, f = values
         return (a, b, c, d, e, f) if all(map(math.isfinite, values)) else None
+
+    def _arguments(self, name: str, text: str, font_size: float) -> list[str]:
+        """Return the numbers of a transform, lengths in user units; empty where one is wrong."""
+        numbers: list[str] = []
+        place = 0
+        for match in _ARGUMENT.finditer(text):
+            if text[place : match.start()].strip(" \t\r\n") not in ("", ","):
+                return []
+            place = match.end()
+            unit = match[2].lower()
+            if unit in ("deg", "grad", "rad", "turn") and name[:2] in ("ro", "sk"):
+                numbers.append(match[0])
+            elif unit in ("", "px"):
+                numbers.append(match[1])
+            elif name.startswith("translate") and unit != "%":
+                numbers.append(f"{self.length(match[0], '', font_size):.17g}")
+            else:
+                return []
+        return [] if text[place:].strip() else numbers
 
 
 def after(outer: Matrix, inner: Matrix) -> Matrix:

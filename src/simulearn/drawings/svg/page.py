@@ -93,106 +93,87 @@ class Page:
     Attributes:
         unit: of the drawing's numbers; None where the file does not say it.
         guess: where `unit` is None, what speaks for one.
-        matrix: from user units to the drawing: y up, the lower left corner of the page at 0.
+        fit: from user units to px of the page.
+        flip: from px of the page to the drawing: y up, the lower left corner of the page at 0.
+        size: width and height of the page, px; NaN where there is none.
         viewport: what lengths in it go by.
-        corner: x and y of the page's upper right corner in the drawing; None without a page.
     """
 
     unit: Unit | None
     guess: Unit | None
-    matrix: Matrix
+    fit: Matrix
+    flip: Matrix
+    size: tuple[float, float]
     viewport: Viewport
-    corner: tuple[float, float] | None
 
-    def placed(self, turn: Matrix) -> Matrix:
-        """Return the matrix after the transform of the outermost `svg`, about the page's middle."""
-        if turn == IDENTITY:
-            return self.matrix
-        a, _, _, d, e, f = self.matrix
-        x, y = self.corner or (-2.0 * e, 2.0 * f)
-        x, y = (x / 2.0 - e) / a, (y / 2.0 - f) / d
-        return after(self.matrix, after(after(shift(x, y), turn), shift(-x, -y)))
+    @property
+    def corner(self) -> tuple[float, float] | None:
+        """The page's upper right corner in the drawing; None without a page."""
+        corner = (self.size[0] * self.flip[0], self.size[1] * self.flip[0])
+        return corner if all(map(math.isfinite, corner)) else None
+
+    def matrix(self, turn: Matrix) -> Matrix:
+        """Return the transform from user units to the drawing.
+
+        Args:
+            turn: the transform of the outermost `svg` itself, which is about the page's middle.
+        """
+        x, y = (0.0 if math.isnan(size) else size / 2.0 for size in self.size)
+        return after(self.flip, after(after(after(shift(x, y), turn), shift(-x, -y)), self.fit))
 
 
 def page_of(document: Document, declared: dict[str, str]) -> Page:
     """Return the page of a file, by the width, height and viewBox of its outermost `svg`."""
+    root = document.root.attributes
     px = density(document)
     per_inch = px.per_inch or px.guess
     window = Viewport(math.nan, math.nan, per_inch)
-    texts = [declared.get("width"), declared.get("height")]
-    width, height = (_size(window, text) for text in texts)
-    box = view_box(document.root.attributes.get("viewBox"))
-    unit: Unit | None = None
-    guess: Unit | None = None
-    scale = (1.0, 1.0)
-    mm = INCH / per_inch
-    given = [
-        (name, text.strip())
-        for name, text, value in zip(("width", "height"), texts, (width, height), strict=True)
-        if text and math.isfinite(value)
-    ]
-    written = " and ".join(f"{name}={text}" for name, text in given)
-    physical = all(text.lower().endswith(tuple(PHYSICAL)) for _, text in given)
-    if box is None:
-        area = (0.0, 0.0, width, height)
-        if (written and (physical or "px" in written)) or px.known:
-            unit = _unit(mm, px.reason)
-    else:
-        area = box
-        both = math.isfinite(width) and math.isfinite(height)
-        fit = fitted(
-            box,
-            width if math.isfinite(width) else height / box[3] * box[2],
-            height if math.isfinite(height) else width / box[2] * box[3],
-            document.root.attributes.get("preserveAspectRatio") if both else None,
-        )
-        if written:
-            source = f"{written} for a viewBox of {box[2]:g} x {box[3]:g}"
-            if not physical:
-                source += f"; {px.reason}"
-            if abs(fit[0] / fit[3] - 1.0) < 1e-9:
-                unit = _unit(mm * fit[0], source)
-            else:  # stretched: the drawing is given in mm
-                scale = (mm * fit[0], mm * fit[3])
-                unit = Unit(1.0, "mm", source + ", stretched (preserveAspectRatio=none)")
-        elif px.known:
-            unit = _unit(mm, px.reason)
-    if px.per_inch is None and not (written and physical and box):
-        unit, guess = None, replace(unit or _unit(mm, px.reason), source=px.reason)
-    x, y, across, down = area
-    known = math.isfinite(across) and math.isfinite(down)
-    bottom = y + (down if math.isfinite(down) else 0.0)
+    sizes = {name: declared.get(name, "").strip() for name in ("width", "height")}
+    width, height = (_px(window, text) for text in sizes.values())
+    sizes = {name: text for name, text in sizes.items() if math.isfinite(_px(window, text))}
+    written = " and ".join(f"{name}={text}" for name, text in sizes.items())
+    physical = bool(sizes) and all(t.lower().endswith(tuple(PHYSICAL)) for t in sizes.values())
+    box = view_box(root.get("viewBox"))
+    fit = IDENTITY
+    if box is not None:
+        if math.isnan(width):
+            width = box[2] if math.isnan(height) else height / box[3] * box[2]
+        if math.isnan(height):
+            height = width / box[2] * box[3]
+        fit = fitted(box, width, height, root.get("preserveAspectRatio"))
+    known = px.known or (physical and box is not None)
+    if written and px.per_inch is not None:
+        known = known or box is not None or physical or "px" in written
+    words = [written + (f" for a viewBox of {box[2]:g} x {box[3]:g}" if box else "")]
+    if not (physical and box is not None):
+        words.append(px.reason)
+    # The drawing is in user units; where those are stretched, in mm if these are known, else px.
+    uniform = abs(fit[0] / fit[3] - 1.0) < 1e-9
+    step = 1.0 / fit[0] if uniform else INCH / per_inch if known else 1.0
+    if not uniform:
+        words.append("stretched (preserveAspectRatio=none)")
+    unit = _unit(INCH / per_inch, step, "; ".join(filter(None, words)))
+    across, down = box[2:] if box else (width, height)
     return Page(
-        unit,
-        guess,
-        (scale[0], 0.0, 0.0, -scale[1], -x * scale[0], bottom * scale[1]),
+        unit if known else None,
+        None if known or px.per_inch is not None else replace(unit, source=px.reason),
+        fit,
+        (step, 0.0, 0.0, -step, 0.0, 0.0 if math.isnan(height) else height * step),
+        (width, height),
         Viewport(across, down, per_inch),
-        (across * scale[0], down * scale[1]) if known else None,
     )
 
 
-def _size(window: Viewport, text: str | None) -> float:
+def _px(window: Viewport, text: str) -> float:
     """Return a width or height in px; NaN where it is none, such as a percentage."""
-    value = window.length(text) if text and "%" not in text else math.nan
+    value = math.nan if "%" in text else window.length(text)
     return value if value > 0.0 else math.nan
 
 
-def _unit(mm: float, source: str) -> Unit:
-    """Return a unit with its name, where its length has one."""
-    for name, length in _NAMES.items():
-        if abs(mm / length - 1.0) < 1e-4:
-            return Unit(mm, name, source)
-    return Unit(mm, "px" if "px, " in source else "unit", source)
-
-
-def guessed(extent: float) -> Unit | None:
-    """Return the likeliest unit of numbers without one, by how wide the drawing is (units)."""
-    for name in ("mm", "cm", "in", "m", "px"):
-        width = extent * _NAMES[name]
-        if 20.0 <= width <= 1000.0:
-            return Unit(
-                _NAMES[name],
-                name,
-                f"the file says no size; in {name} the drawing would be {width:.4g} mm wide",
-            )
-    return None
+def _unit(px: float, step: float, source: str) -> Unit:
+    """Return the unit of which a px (mm) has `step`, with its name, where it has one."""
+    length = px / step
+    for name, mm in (*_NAMES.items(), ("px", px)):
+        if (wrong := abs(length / mm - 1.0)) < 1e-4:
+            return Unit(mm if wrong < 1e-12 else length, name, source)
+    return Unit(length, "unit", source)

@@ -12,10 +12,11 @@ from simulearn.drawings.svg.curves import Arc, Bezier, Point
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _COMMAND = re.compile(r"([MmLlHhVvCcSsQqTtAaZz])([^MmLlHhVvCcSsQqTtAaZz]*)")
 _SPACE = " \t\r\n\f"
-_ARC = re.compile(
-    rf"[{_SPACE},]*({_NUMBER.pattern})[{_SPACE},]*({_NUMBER.pattern})[{_SPACE},]*"
-    rf"({_NUMBER.pattern})[{_SPACE},]*([01])[{_SPACE},]*([01])"
-    rf"[{_SPACE},]*({_NUMBER.pattern})[{_SPACE},]*({_NUMBER.pattern})"
+_BETWEEN = rf"[{_SPACE},]*+"
+_ARC = re.compile(  # possessive, so that no number is taken apart; the flags need no space
+    rf"{_BETWEEN}((?>{_NUMBER.pattern}))" * 3
+    + rf"{_BETWEEN}([01])" * 2
+    + rf"{_BETWEEN}((?>{_NUMBER.pattern}))" * 2
 )
 _COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 
@@ -31,11 +32,6 @@ class Bent(NamedTuple):
 
     kind: str
     pieces: list[Bezier | Arc]
-
-    @property
-    def points(self) -> list[Point]:
-        """Where it begins and where its pieces end."""
-        return [self.pieces[0].begin, *(piece.end for piece in self.pieces)]
 
 
 Run = Straight | Bent
@@ -104,7 +100,7 @@ class Pen:
             self.line(to)
             return
         start = math.atan2((x * v[0] + y * v[1]) / vv, (x * u[0] + y * u[1]) / uu)
-        self.curve(Arc("elliptical arc", centre, u, v, start, float(arc.sweep), self.at, to))
+        self.curve(Arc("elliptical arc", centre, u, v, start, float(arc.sweep), to))
 
 
 def path(data: str) -> tuple[list[Run], str]:

@@ -11,12 +11,12 @@ from simulearn.drawings.svg.lengths import IDENTITY, Viewport, after, fitted, sh
 from simulearn.drawings.svg.page import page_of
 from simulearn.drawings.svg.result import Collected
 from simulearn.drawings.svg.shapes import runs_of
-from simulearn.drawings.svg.sheet import StyleSheet
+from simulearn.drawings.svg.sheet import UNREAD, StyleSheet
 from simulearn.drawings.svg.style import Style, inherited, is_hidden, is_zero, painted
 from simulearn.drawings.svg.tree import DEEPEST, XLINK, Document, Element, read_tree
 from simulearn.errors import InputError
 
-MOST_VISITS = 400_000  # elements drawn, those of a `use` each time
+MOST_VISITS = 250_000  # elements drawn, those of a `use` each time
 
 _SHAPES = frozenset(("line", "polyline", "polygon", "rect", "circle", "ellipse", "path"))
 _GROUPS = frozenset(("g", "a", "svg", "switch", "use"))
@@ -62,7 +62,10 @@ def read_svg(data: bytes) -> Drawing:
     Raises:
         InputError: the file is no SVG, broken, or too large.
     """
-    return _Reader(read_tree(data)).drawing()
+    try:
+        return _Reader(read_tree(data)).drawing()
+    except RecursionError:  # of brackets within brackets in a style
+        raise InputError("is nested too deeply to be read", "too-large") from None
 
 
 class _Place(NamedTuple):
@@ -92,7 +95,7 @@ class _Reader:
 
     def __init__(self, document: Document) -> None:
         self.document = document
-        self.sheet = StyleSheet(e.text for e in document.elements if e.tag == "style")
+        self.sheet = StyleSheet(document.elements)
         self.layers = Layers(document)
         self.ids: dict[str, Element] = {}
         for element in document.elements:
@@ -107,14 +110,19 @@ class _Reader:
         place = self.entered(
             root, declared, _Place(IDENTITY, Style(), page.viewport, self.layers.root_name())
         )
-        matrix = page.placed(place.matrix)
-        self.children(root, place._replace(matrix=matrix))
+        self.children(root, place._replace(matrix=page.matrix(place.matrix)))
         messages = self.document.messages + self.sheet.messages()
         return self.found.drawing(page, messages)
 
     def children(self, element: Element, place: _Place) -> None:
+        place = self.deeper(place)
         for child in _chosen(element) if element.tag == "switch" else element.children:
             self.visit(child, place)
+
+    def deeper(self, place: _Place) -> _Place:
+        if place.depth >= DEEPEST:
+            raise InputError(f"its elements are nested more than {DEEPEST} deep", "too-large")
+        return place._replace(depth=place.depth + 1)
 
     def visit(self, element: Element, place: _Place) -> None:
         self.visits += 1
@@ -123,9 +131,6 @@ class _Reader:
                 f"draws more than {MOST_VISITS:,} elements, those of `use` counted each time",
                 "too-large",
             )
-        place = place._replace(depth=place.depth + 1)
-        if place.depth > DEEPEST:
-            raise InputError(f"its elements are nested more than {DEEPEST} deep", "too-large")
         tag = element.tag
         if tag in _MOVING:
             self.found.tell("Scripts and animations are not run.")
@@ -163,6 +168,8 @@ class _Reader:
         for edge in ("clip-path", "mask"):
             if declared.get(edge, "none") != "none" and not hidden:
                 self.found.tell("{} clipped or masked; what the edge hides is read, too.")
+        for property_ in sorted(UNREAD & declared.keys()):
+            self.found.tell(f"The CSS property {property_} is not read.")
         matrix = place.matrix
         if turn := self.transform(element, declared, place.viewport, style.font_size):
             matrix = after(matrix, turn)
@@ -202,7 +209,7 @@ class _Reader:
         matrix = after(
             place.matrix, shift(*(0.0 if math.isnan(value) else value for value in (x, y)))
         )
-        place = place._replace(matrix=matrix, used=(*place.used, target))
+        place = self.deeper(place)._replace(matrix=matrix, used=(*place.used, target))
         if target.tag not in ("symbol", "svg"):
             self.visit(target, place)
             return
@@ -233,8 +240,7 @@ class _Reader:
             matrix = after(matrix, fitted(box, width, height, aspect))
             width, height = box[2], box[3]
         inner = Viewport(width, height, viewport.per_inch)
-        depth = place.depth + 1
-        self.children(element, place._replace(matrix=matrix, viewport=inner, depth=depth))
+        self.children(element, place._replace(matrix=matrix, viewport=inner))
 
     def shape(self, element: Element, declared: dict[str, str], place: _Place) -> None:
         tag, style, layer = element.tag, place.style, place.layer

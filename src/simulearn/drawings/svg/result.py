@@ -6,7 +6,7 @@ import numpy as np
 
 from simulearn.drawings.drawing import Curve, Drawing, LeftOut, Line
 from simulearn.drawings.svg.curves import Matrix, apply, flattened
-from simulearn.drawings.svg.page import Page, guessed
+from simulearn.drawings.svg.page import Page
 from simulearn.drawings.svg.path import Bent, Run
 from simulearn.drawings.svg.tree import Element
 from simulearn.errors import InputError
@@ -32,9 +32,13 @@ class Collected:
     ) -> None:
         """Add the runs of a shape, transformed."""
         for run in runs:
-            points = [apply(matrix, point) for point in run.points]
-            self._count(len(points) - 1)
-            if not max(max(abs(x), abs(y)) for x, y in points) < FARTHEST:
+            if isinstance(run, Bent):
+                self._count(len(run.pieces))
+                points = [apply(matrix, point) for piece in run.pieces for point in piece.around]
+            else:
+                self._count(len(run.points) - 1)
+                points = [apply(matrix, point) for point in run.points]
+            if not all(abs(x) < FARTHEST and abs(y) < FARTHEST for x, y in points):
                 self.leave_out(element.tag, layer, "has a coordinate that is no place")
             elif isinstance(run, Bent):
                 self._curves.append(_curve(run, matrix, layer, colour, element.name))
@@ -58,10 +62,6 @@ class Collected:
 
     def drawing(self, page: Page, messages: list[str]) -> Drawing:
         """Return all as a drawing."""
-        guess = page.guess
-        if page.unit is None and guess is None and self._lines:
-            points = np.concatenate([line.points for line in self._lines])
-            guess = guessed(float(np.ptp(points, axis=0).max()))
         return Drawing(
             "SVG",
             self._lines,
@@ -71,7 +71,7 @@ class Collected:
                 for (kind, layer, reason), count in self._left.items()
             ],
             page.unit,
-            guess,
+            page.guess,
             messages=messages + self._messages(page.corner),
         )
 

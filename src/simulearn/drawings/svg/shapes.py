@@ -70,7 +70,7 @@ def _rect(pen: Pen, length: Callable[[str, str], float]) -> None:
         end = (cx - dy * rx, cy + dx * ry)
         centre = (to[0] - dy * rx, to[1] + dx * ry)
         u, v = (dy * rx, -dx * ry), (dx * rx, dy * ry)
-        pen.curve(Arc("rounded corner", centre, u, v, 0.0, math.pi / 2, pen.at, end))
+        pen.curve(Arc("rounded corner", centre, u, v, 0.0, math.pi / 2, end))
 
 
 def _ellipse(pen: Pen, tag: str, length: Callable[[str, str], float]) -> None:
@@ -82,4 +82,4 @@ def _ellipse(pen: Pen, tag: str, length: Callable[[str, str], float]) -> None:
         rx, ry = _given(ry if math.isnan(rx) else rx), _given(rx if math.isnan(ry) else ry)
     if rx > 0.0 and ry > 0.0:
         end = (centre[0] + rx, centre[1])
-        pen.curve(Arc(tag, centre, (rx, 0.0), (0.0, ry), 0.0, 2.0 * math.pi, end, end))
+        pen.curve(Arc(tag, centre, (rx, 0.0), (0.0, ry), 0.0, 2.0 * math.pi, end))

@@ -36,25 +36,24 @@ _INHERITED = {
     "stroke-width": "stroke_width",
     "stroke-opacity": "stroke_opacity",
     "fill-opacity": "fill_opacity",
+    "visibility": "visible",
 }
 
 
 def inherited(style: Style, declared: dict[str, str]) -> Style:
     """Return the style of an element from that of the element around it."""
     changes: dict[str, Any] = {}
-    for name, attribute in _INHERITED.items():
-        value = declared.get(name, "inherit")
-        if value in ("inherit", "unset"):
+    for name, value in declared.items():
+        attribute = _INHERITED.get(name)
+        if attribute is None or value in ("inherit", "unset"):
             continue
         if value == "initial":
             changes[attribute] = getattr(_START, attribute)
+        elif name == "visibility":
+            if value.lower() in ("visible", "hidden", "collapse"):
+                changes[attribute] = value.lower() == "visible"
         elif name not in ("stroke", "fill", "color") or paint(value) is not None:
             changes[attribute] = value
-    visibility = declared.get("visibility", "inherit").lower()
-    if visibility in ("visible", "initial"):
-        changes["visible"] = True
-    elif visibility in ("hidden", "collapse"):
-        changes["visible"] = False
     return replace(style, **changes) if changes else style
 
 
@@ -77,7 +76,7 @@ class Paint(NamedTuple):
 @lru_cache(maxsize=4096)
 def paint(value: str) -> Paint | None:
     """Return what a paint as written means, or None where it is none."""
-    text = value.strip()
+    text = value.strip()[:1000]
     lower = text.lower()
     if lower == "none":
         return Paint(False)

@@ -14,7 +14,8 @@ from simulearn.errors import InputError
 
 LARGEST = 32 * 2**20  # bytes of text
 DEEPEST = 200
-MOST_ELEMENTS = 400_000
+MOST_ELEMENTS = 250_000
+LONGEST_TEXT = 2**20  # characters kept, at least
 LONGEST_ENTITIES = 4 * 2**20  # characters that all entities of a file may add
 
 SVG = "http://www.w3.org/2000/svg"
@@ -138,6 +139,7 @@ class _Builder:
         if not self.text:
             raise InputError("is empty", "svg-broken")
         parser = self.parser = expat.ParserCreate(namespace_separator=" ")
+        parser.buffer_size = 2**20
         parser.buffer_text = True
         parser.StartElementHandler = self.start
         parser.EndElementHandler = self.end
@@ -147,6 +149,7 @@ class _Builder:
         parser.ProcessingInstructionHandler = self.instruction
         parser.EntityDeclHandler = self.entity
         parser.SkippedEntityHandler = self.skipped
+        parser.ExternalEntityRefHandler = self.external
         try:
             parser.Parse(self.text, True)
         except expat.ExpatError as error:
@@ -195,7 +198,9 @@ class _Builder:
             self.open.pop()
 
     def characters(self, text: str) -> None:
-        if self.open and not self.foreign and self.open[-1].tag in _WITH_TEXT:
+        if not self.open or self.foreign or self.open[-1].tag not in _WITH_TEXT:
+            return
+        if len(self.open[-1].text) <= LONGEST_TEXT:
             self.open[-1].text += text
 
     def comment(self, text: str) -> None:
@@ -229,8 +234,17 @@ class _Builder:
             raise InputError(f"its entity {name} makes it too large", "too-large")
 
     def skipped(self, name: str, parameter: int) -> None:
-        message = f"Its entity {name} stands for something outside of the file, which is not read."
-        if not parameter and message not in self.messages:
+        if not parameter:
+            self.tell(f"Its entity {name} is declared outside of the file, which is not read.")
+
+    def external(
+        self, context: str, base: str | None, system: str | None, public: str | None
+    ) -> int:
+        self.tell("It refers to text outside of the file, which is not read.")
+        return 1  # done with, without being opened
+
+    def tell(self, message: str) -> None:
+        if message not in self.messages:
             self.messages.append(message)
 
 
