@@ -6,26 +6,6 @@ from playwright.sync_api import expect
 
 import gestures as do
 
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
-
-
-@pytest.fixture(scope="session")
-def axe():
-    """Return a function that lists what is wrong with a page as it is."""
-    script = pytest.importorskip("axe_playwright_python.sync_playwright").Axe().axe_script
-    every = {"type": "tag", "values": RULES}
-    colours = {"type": "rule", "values": ["color-contrast"]}  # the only difference in the dark
-
-    def wrong(page):
-        if not page.evaluate("() => 'axe' in window"):
-            page.evaluate(script)
-        dark = page.evaluate("() => document.documentElement.dataset.theme") == "dark"
-        options = {"runOnly": colours if dark else every, "resultTypes": ["violations"]}
-        found = page.evaluate("(options) => axe.run(options)", options)["violations"]
-        return [(one["id"], node["html"]) for one in found for node in one["nodes"]]
-
-    return wrong
-
 
 def looks(**more):
     """Return the options of a page of each theme; nothing moves in it."""

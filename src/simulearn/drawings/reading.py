@@ -9,6 +9,7 @@ from io import BytesIO
 from simulearn.drawings.drawing import Drawing
 from simulearn.drawings.lists import read_json_lines
 from simulearn.drawings.objfile import read_obj
+from simulearn.drawings.pages import page_contents
 from simulearn.drawings.tables import read_csv
 from simulearn.drawings.text import decoded
 from simulearn.errors import InputError
@@ -46,7 +47,7 @@ NUMBERS = re.compile(r"[-+]?[\d.]")
 
 
 def own_grid(data: bytes) -> Grid | None:
-    """Return the grid of a grid, result or task file of ours; None for any other file.
+    """Return the grid of a grid, result, task or page of ours; None for any other file.
 
     Args:
         data: contents of the file.
@@ -54,10 +55,13 @@ def own_grid(data: bytes) -> Grid | None:
     Raises:
         InputError: it is one of ours, but not sound.
     """
-    if len(data) > MOST_BYTES or not data.lstrip(BEFORE_JSON).startswith(b"{"):
+    if len(data) > MOST_BYTES:
+        return None
+    page = page_contents(data)
+    if page is None and not data.lstrip(BEFORE_JSON).startswith(b"{"):
         return None
     try:
-        value = parse_json(decoded(data))
+        value = parse_json(decoded(data) if page is None else page)
     except InputError:
         return None
     schema = value.get("schema")

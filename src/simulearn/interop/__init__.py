@@ -1,4 +1,4 @@
-"""Results as files of other programs: surfaces, solids, and pages that play in a browser.
+"""Results as files of other programs: surfaces, solids, tables, and pages that play in a browser.
 
 Each name is imported when it is first used, since most of them load libraries of their own.
 """
@@ -8,13 +8,35 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from simulearn.interop.html import write_html as write_html
+    from simulearn.interop.morphing import write_morph as write_morph
     from simulearn.interop.surface import write_surface as write_surface
+    from simulearn.interop.table import write_csv as write_csv
+    from simulearn.interop.threedm import write_3dm as write_3dm
+    from simulearn.interop.threedm import write_job_3dm as write_job_3dm
     from simulearn.interop.vtk import write_pvd as write_pvd
     from simulearn.interop.vtk import write_vtu as write_vtu
 
-PLACES = {"write_html": "html", "write_pvd": "vtk", "write_surface": "surface", "write_vtu": "vtk"}
+PLACES = {  # name -> module
+    "write_3dm": "threedm",
+    "write_csv": "table",
+    "write_html": "html",
+    "write_job_3dm": "threedm",
+    "write_morph": "morphing",
+    "write_pvd": "vtk",
+    "write_surface": "surface",
+    "write_vtu": "vtk",
+}
 
-__all__ = ["write_html", "write_pvd", "write_surface", "write_vtu"]
+__all__ = [
+    "write_3dm",
+    "write_csv",
+    "write_html",
+    "write_job_3dm",
+    "write_morph",
+    "write_pvd",
+    "write_surface",
+    "write_vtu",
+]
 
 
 def __getattr__(name: str) -> Any:

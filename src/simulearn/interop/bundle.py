@@ -46,6 +46,11 @@ class Bundle:
         self._add(entry.resolve())
         return '(() => {\n"use strict";\n' + "".join(self._parts) + "})();\n"
 
+    @property
+    def modules(self) -> list[Path]:
+        """The files of all modules that were needed, in the order in which they run."""
+        return list(self._names)
+
     def _add(self, path: Path) -> str:
         if path in self._open:
             raise ValueError(f"{path} is in a cycle of imports")

@@ -12,30 +12,29 @@ from base64 import b64encode
 from functools import cache
 from hashlib import sha256
 from html import escape
-from io import BytesIO
 from pathlib import Path
 from string import Template
 
 import numpy as np
 
 from simulearn import __version__
+from simulearn.drawings.pages import SCHEMA as PAGE
 from simulearn.files import replacing
 from simulearn.grid import grid_to_dict
 from simulearn.interop import frames
 from simulearn.interop.bundle import Bundle
 from simulearn.interop.libraries import libraries
 from simulearn.interop.plan import plan
+from simulearn.interop.png import png
 from simulearn.show import deformed
 from simulearn.show.deformed import dimensions
 from simulearn.simulate import Result
-from simulearn.simulate.resultfile import SCHEMA, qualities
+from simulearn.simulate.resultfile import qualities
 
 OWN = Path(__file__).parent / "page"
 STUDIO = Path(__file__).parents[1] / "studio" / "page"  # read as data, not imported
 STYLES = (STUDIO / "style" / "tokens.css", STUDIO / "style" / "shape.css", OWN / "page.css")
 STEP = 2.0**-10  # mm (and MPa): what the frames are rounded to, so that they compress
-DPI = 110  # of the still picture
-COLOURS = 48  # of the still picture
 
 
 def write_html(result: Result, path: Path | str) -> None:
@@ -65,9 +64,9 @@ def page(result: Result, title: str = "Shape") -> str:
     """
     start, program, digest = _program()
     style = "\n".join(path.read_text("utf-8") for path in STYLES)
-    picture, width, height = _picture(result)
+    picture, width, height = png(deformed(result))
     contents = {
-        "schema": SCHEMA,
+        "schema": PAGE,
         "grid": grid_to_dict(result.grid),
         "engine": result.engine,
         "seconds": round(float(result.seconds), 3),
@@ -117,18 +116,6 @@ def _rounded(message: bytes) -> bytes:
     head = 8 + size
     numbers = np.frombuffer(message, "<f4", offset=head)
     return message[:head] + (np.round(numbers / STEP) * STEP + 0.0).astype("<f4").tobytes()
-
-
-def _picture(result: Result) -> tuple[bytes, int, int]:
-    """Return a small PNG of the last frame, and its width and height in pixels."""
-    from PIL import Image
-
-    drawn, content = BytesIO(), BytesIO()
-    deformed(result).savefig(drawn, format="png", dpi=DPI)
-    with Image.open(drawn) as image:
-        few = image.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    few.save(content, "png", optimize=True)
-    return content.getvalue(), *few.size
 
 
 def _packed(data: bytes) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.grid import Grid, outline
+from simulearn.grid.structure import structure_errors
 from simulearn.material import load_material
 
 COLOURS = {
@@ -54,41 +55,50 @@ def plan(grid: Grid) -> str:
 
 def _shapes(grid: Grid) -> dict[str, Array]:
     """Return the polygons (N, 4, 2) of each class, mm."""
-    joints, ends = _outline(grid)
-    ratio = np.clip(np.abs(grid.actuators), 0, 1)[:, None, None]
+    joints, ends, ratio = _outline(grid) or _axes(grid)
+    part = np.clip(np.abs(ratio), 0, 1)[:, None, None]
 
     def at(t: Array) -> Array:
         return (1 - t) * ends[:, 0] + t * ends[:, 1]
 
-    first, last = at((1 - ratio) / 2), at((1 + ratio) / 2)
+    first, last = at((1 - part) / 2), at((1 + part) / 2)
     active = np.stack([first[:, 0], last[:, 0], last[:, 1], first[:, 1]], axis=1)
     fixed = np.arange(len(joints)) == grid.fixed
     return {
         "beam": np.stack([ends[:, 0, 0], ends[:, 1, 0], ends[:, 1, 1], ends[:, 0, 1]], axis=1),
-        "top": active[grid.actuators > 0],
-        "bottom": active[grid.actuators < 0],
+        "top": active[ratio > 0],
+        "bottom": active[ratio < 0],
         "joint": joints[~fixed],
         "fixed": joints[fixed],
     }
 
 
-def _outline(grid: Grid) -> tuple[Array, Array]:
-    """Return corners of joints (J, 4, 2), and of beams (B, [start, end], [right, left], 2)."""
+def _outline(grid: Grid) -> tuple[Array, Array, Array] | None:
+    """Return corners of joints (J, 4, 2), those of beams (B, 2, 2, 2), and ratios (B,), if sound.
+
+    Of beams, the axes are [start, end], [right, left] and x and y.
+    """
+    if structure_errors(grid):
+        return None
     try:
         shape = outline(grid, load_material(grid.material).section)
-        return shape.joints, shape.beams
     except InputError:
-        pass
+        return None
+    return shape.joints, shape.beams, grid.actuators
+
+
+def _axes(grid: Grid) -> tuple[Array, Array, Array]:
+    """Return the same for a grid without an outline: beams between joints that exist, as lines."""
     half = WIDTH / 2
     joints = grid.joints[:, None] + half * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
-    known = grid.beams[((grid.beams >= 0) & (grid.beams < len(joints))).all(axis=1)]
-    if len(known) < len(grid.beams):
-        return joints, np.zeros((len(grid.beams), 2, 2, 2))
-    axes = grid.joints[known]
+    known = ((grid.beams >= 0) & (grid.beams < len(joints))).all(axis=1)
+    axes = grid.joints[grid.beams[known]]
     along = axes[:, 1] - axes[:, 0]
     along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
     left = half * np.stack([-along[:, 1], along[:, 0]], axis=1)[:, None]
-    return joints, np.stack([axes - left, axes + left], axis=2)
+    ratio = np.zeros(len(grid.beams))
+    ratio[: len(grid.actuators)] = grid.actuators[: len(ratio)]
+    return joints, np.stack([axes - left, axes + left], axis=2), ratio[known]
 
 
 def _path(kind: str, polygons: Array) -> str:
@@ -108,14 +118,13 @@ def _numbers(grid: Grid, points: Array) -> Iterable[str]:
         f'paint-order="stroke" stroke-linejoin="round" text-anchor="middle" '
         f'font-family="system-ui, sans-serif" font-size="{size:.1f}">'
     )
-    for weight, places in (("400", _middles(grid)), ("700", grid.joints)):
-        for k, (x, y) in enumerate(places):
-            if np.isfinite([x, y]).all():
-                place = f'x="{x:.1f}" y="{0.35 * size - y:.1f}"'
-                yield f'<text {place} font-weight="{weight}">{k}</text>'
+    middles = [
+        (b, grid.joints[[i, j]].mean(axis=0))
+        for b, (i, j) in enumerate(grid.beams)
+        if min(i, j) >= 0 and max(i, j) < len(grid.joints)
+    ]
+    for weight, places in (("400", middles), ("700", enumerate(grid.joints))):
+        for k, (x, y) in places:
+            place = f'x="{x:.1f}" y="{0.35 * size - y:.1f}"'
+            yield f'<text {place} font-weight="{weight}">{k}</text>'
     yield "</g>"
-
-
-def _middles(grid: Grid) -> Array:
-    ends = np.clip(grid.beams, 0, max(len(grid.joints) - 1, 0))
-    return grid.joints[ends].mean(axis=1) if len(grid.joints) else np.zeros((0, 2))

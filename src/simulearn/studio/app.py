@@ -20,6 +20,7 @@ from simulearn.studio.jobs import Jobs
 from simulearn.studio.openapi import describe
 from simulearn.studio.page import serve_page
 from simulearn.studio.problems import LastResort, answer_errors
+from simulearn.studio.rhino import routes as rhino
 from simulearn.studio.routes import about, designs, documents, files, jobs, prints
 from simulearn.studio.safety import BodyLimit, OwnOriginOnly, SecurityHeaders
 from simulearn.studio.settings import Settings
@@ -34,6 +35,7 @@ ROUTERS = (
     files.router,
     documents.router,
     hops.router,
+    rhino.router,
 )
 ROOM = 2**14  # bytes of text that are worth compressing
 EFFORT = 4  # of compressing; more takes longer than it saves

@@ -1,4 +1,4 @@
-"""Files that a person opens: grids, tasks, results and documents of ours, and drawings of others.
+"""Files that a person opens: grids, tasks, results, pages, documents, and drawings of others.
 
 All are known by what they hold, not by their names.
 """
@@ -10,6 +10,8 @@ from pathlib import PurePath, PureWindowsPath
 from typing import Any
 
 from simulearn.drawings.importing import Imported, Options, imported
+from simulearn.drawings.pages import SCHEMA as PAGE
+from simulearn.drawings.pages import page_contents
 from simulearn.drawings.units import UnitError
 from simulearn.errors import InputError, Message
 from simulearn.files import parse_json
@@ -32,7 +34,8 @@ MARKS = {  # of text that is not UTF-8 (or marked as such)
 LOOK = 2**12  # bytes in which JSON begins
 OWN = "simulearn."  # the beginning of our schemas
 OPENED = "the studio opens grids, tasks, results, documents and drawings"
-ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj")  # left out of a design's name
+# What is left out of a design's name.
+ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj", ".html")
 # What a search begins from may not have; it is no error in a drawing.
 REMOVABLE = ("dangling-beam", "unused-joint")
 
@@ -78,7 +81,7 @@ def _parts(data: bytes, name: str, options: Options | None) -> dict[str, Any]:
     }
     if not data.strip():
         raise InputError(f"is empty; {OPENED}", "empty", "file")
-    text = _json(data)
+    text = page_contents(data) or _json(data)
     ours = None if text is None else _ours(parse_json(text))
     return parts | (_of_drawing(imported(data, name, options)) if ours is None else ours)
 
@@ -130,6 +133,12 @@ def _of_result(data: Any) -> dict[str, Any]:
     return {"kind": "result", "grid": grid_to_dict(grid), "messages": [message]}
 
 
+def _of_page(data: Any) -> dict[str, Any]:
+    text = "the file is a page that plays a result; its design was opened and is simulated again"
+    grid = grid_to_dict(grid_from_dict(data.get("grid")))
+    return {"kind": "result", "grid": grid, "messages": [Message("opened-result", "file", text)]}
+
+
 def _of_task(data: Any) -> dict[str, Any]:
     try:
         task = task_from_dict(data)
@@ -172,7 +181,13 @@ def _of_document(data: Any) -> dict[str, Any]:
     }
 
 
-READERS = {GRID: _of_grid, TASK: _of_task, RESULT: _of_result, DOCUMENT: _of_document}
+READERS = {
+    GRID: _of_grid,
+    TASK: _of_task,
+    RESULT: _of_result,
+    PAGE: _of_page,
+    DOCUMENT: _of_document,
+}
 
 
 def _stem(name: str) -> str:

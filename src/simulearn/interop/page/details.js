@@ -10,7 +10,7 @@ export const Details = {
     const figure = ref(null);
     onMounted(() => figure.value.prepend(plan));
     const { remarks, warnings } = result;
-    return () => h("aside", { class: "details", "aria-label": t("share.result") }, [
+    return () => h("aside", { class: "details", tabindex: 0, "aria-label": t("share.result") }, [
       remarks.length + warnings.length > 0 && h("section", { class: "warnings" }, [
         h("h2", t("share.warnings")),
         h("ul", { lang: "en" }, [...remarks, ...warnings.map(({ message }) => message)]

@@ -19,6 +19,7 @@ const title = document.querySelector("h1").textContent;
 const Page = {
   setup() {
     const place = ref(null);
+    const moves = canDraw();
     const near = ref(false); // a browser keeps few canvases: a page out of sight has none
     const watcher = new IntersectionObserver((entries) => { near.value = entries.at(-1).isIntersecting; });
     onMounted(() => watcher.observe(place.value));
@@ -29,7 +30,7 @@ const Page = {
         h("button", { type: "button", class: "download", onClick: download }, t("share.download")),
       ]),
       h("main", { class: "page" }, [
-        h("div", { class: "place", ref: place }, canDraw() ? near.value && h(Shape) : h(Still)),
+        h("div", { class: "place", ref: place }, moves ? near.value && h(Shape) : h(Still)),
         h(Details, { result: state.answer.result, plan }),
       ]),
     ];

@@ -8,11 +8,13 @@ const OLD = {
   de: "Die bewegte Form braucht einen neueren Browser.",
 };
 
+const reason = document.querySelector("#reason");
+reason.textContent = "";
 followTheme();
 unpacked("simulearn-program").then((packed) => packed.text()).then((program) => {
   const script = document.createElement("script");
   script.textContent = program;
   document.body.append(script);
 }).catch(() => {
-  document.querySelector("#reason").textContent = OLD[language()];
+  reason.textContent = OLD[language()];
 });

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,6 @@ from simulearn.grid import Grid
 from simulearn.studio.hops.curves import curve_of
 from simulearn.studio.hops.parameters import CURVE, MOST, NUMBER, POINT, Input
 from simulearn.studio.hops.placement import Placement, placement_of, unit_of
-from simulearn.studio.hops.schemas import Item
 from simulearn.studio.hops.values import Inputs
 from simulearn.studio.routes.designs import check_size
 from simulearn.studio.settings import Settings
@@ -21,7 +21,7 @@ from simulearn.studio.settings import Settings
 Points = NDArray[np.float64]
 
 ASKED = "actuators"  # code of the message that says which ratios were given
-QUIET = ("fixed", "unit")  # what is usual: it belongs in no balloon
+QUIET = ("fixed", "unit", ASKED)  # what is usual: it belongs in no balloon
 STEPS = 1e6  # of a ratio of 1; a layer's name holds no more
 FAR = 3.6  # mm, half the width of a beam: nearer is at the joint
 MOST_PLACES = 100  # of one mend that are told
@@ -51,10 +51,18 @@ DRAWN = (CURVES, ACTUATORS, FIXED)
 
 @dataclass(frozen=True, eq=False)
 class Remark:
-    """Something to be told, where in the grid (mm; its middle if nowhere else), and how loud."""
+    """Something to be told.
+
+    Attributes:
+        text: for people.
+        place: where in the grid, mm; its middle if nowhere else.
+        code: for programs.
+        quiet: whether it is usual, and belongs in no balloon.
+    """
 
     text: str
     place: tuple[float, float]
+    code: str = ""
     quiet: bool = False
 
 
@@ -119,6 +127,9 @@ def design_of(
 ) -> Design:
     """Return the grid that the curves of a request show.
 
+    Each curve goes on the layer that stands for its ratio. So the mends, which know the line that a
+    beam comes from, give each beam its ratio.
+
     Args:
         inputs: curves, ratios and the fixed point.
         modelunits: name of the model's unit in Rhino.
@@ -128,31 +139,60 @@ def design_of(
     Raises:
         InputError: the curves, ratios or the fixed point are wrong, or show no grid.
     """
+    lines: list[Line | Curve] = []
+    ratios = _ratios(inputs)
+    for k, (item, ratio) in enumerate(zip(inputs.items[CURVES.name], ratios, strict=True)):
+        line = curve_of(item, f"Curves[{k}]")
+        lines.append(replace(line, layer=layer_of(ratio)) if isinstance(line, Line) else line)
+    design = design_from(lines, inputs.points(FIXED.name), modelunits, settings, loud, "layers")
+    # The layers are not the person's own.
+    design.remarks[:] = [one for one in design.remarks if one.code != ASKED]
+    return design
+
+
+def design_from(
+    lines: Sequence[Line | Curve],
+    fixed: Points,
+    modelunits: str | None,
+    settings: Settings,
+    loud: bool = False,
+    actuators: Literal["auto", "layers"] = "auto",
+) -> Design:
+    """Return the grid that lines in a model show.
+
+    Args:
+        lines: in the model's unit.
+        fixed: (0 or 1, 3) a point at the joint that is held.
+        modelunits: name of the model's unit in Rhino.
+        settings: how large a grid may be.
+        loud: whether a conversion of units is a warning.
+        actuators: what says their ratios; layers where one's name does, else colours ("auto").
+
+    Raises:
+        InputError: the lines show no grid, or one that is too large.
+    """
     unit, told = unit_of(modelunits)
-    lines = _lines(inputs.items.get(CURVES.name, ()), _ratios(inputs))
     straight = [line for line in lines if isinstance(line, Line)]
     placement, plane = placement_of(_all_points(straight or lines, unit.mm), unit)
-    drawing = Drawing("Grasshopper", [], unit=unit, plain=bool(told))
+    drawing = Drawing("Rhino", [], unit=unit, plain=bool(told))
     for line in lines:
         if isinstance(line, Line):
             drawing.lines.append(replace(line, points=_level(placement, line.points)))
         else:
             drawing.curves.append(line)
-    found = grid_of(drawing, Options(actuators="layers"))
+    found = grid_of(drawing, Options(actuators=actuators))
     check_size(found.grid, settings)
-    grid, moved = _held(found.grid, inputs.points(FIXED.name), placement)
+    grid, moved = _held(found.grid, fixed, placement)
     design = Design(grid, placement)
-    messages = [*told, *plane, *moved]
-    messages += [one for one in found.messages if one.code != ASKED]
-    usual = QUIET if unit.mm == 1.0 or not loud else QUIET[:1]
-    for one in messages:
+    usual = {*QUIET} - ({"unit"} if loud and unit.mm != 1.0 else set())
+    for one in (*told, *plane, *moved, *found.messages):
+        if one.code == "fixed" and len(fixed):
+            continue
         quiet = one.code in usual and one not in told
-        if one.code == "fixed" and inputs.has(FIXED.name):
-            continue  # it says where it would be
-        design.remarks.append(Remark(one.message, design.place(one.where), quiet))
+        design.remarks.append(Remark(one.message, design.place(one.where), one.code, quiet))
     for mend in found.mends:
         places = mend.places[:MOST_PLACES] or (design.place("grid"),)
-        design.remarks.extend(Remark(mend.message, place) for place in places)
+        design.remarks.extend(Remark(mend.message, place, mend.code) for place in places)
     return design
 
 
@@ -175,19 +215,8 @@ def _ratios(inputs: Inputs) -> list[float]:
     return ratios
 
 
-def _lines(items: Sequence[Item], ratios: list[float]) -> list[Line | Curve]:
-    """Return the curves as lines of a drawing, each on the layer that stands for its ratio.
-
-    So the mends, which know the line that a beam comes from, give each beam its ratio.
-    """
-    found = []
-    for k, (item, ratio) in enumerate(zip(items, ratios, strict=True)):
-        line = curve_of(item, f"Curves[{k}]")
-        found.append(replace(line, layer=_layer(ratio)))
-    return found
-
-
-def _layer(ratio: float) -> str:
+def layer_of(ratio: float) -> str:
+    """Return the name of the layer that stands for a ratio."""
     rounded = round(abs(ratio) * STEPS) / STEPS
     return f"{'top' if ratio > 0 else 'bottom'} {rounded:.6f}" if rounded else "passive"
 

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.show.style import GHOST, colours
 from simulearn.simulate import Result, Skin, skin
 from simulearn.simulate.skin import edges
 from simulearn.studio.hops import archives
@@ -15,13 +14,13 @@ from simulearn.studio.hops.design import Design
 Points = NDArray[np.float64]
 
 SPACING = 5.0  # mm along a beam; Rhino shows the surface smooth between
+STRAIGHT = 1e4  # mm; what is flat needs no points between
 ALONG = np.linspace(0, 1, 9)  # of a beam, where the points of its axis are
-GREY = tuple(int(GHOST[k : k + 2], 16) for k in (1, 3, 5))
 
 
-def surface(result: Result) -> Skin:
-    """Return the surface that meshes are made of."""
-    return skin(result, SPACING)
+def surface(result: Result, frame: int) -> Skin:
+    """Return the surface that the mesh of a frame is made of."""
+    return skin(result, SPACING if frame else STRAIGHT)
 
 
 def mesh(shape: Skin, frame: int, design: Design, coloured: bool = True) -> Any:
@@ -65,10 +64,12 @@ def flat_axes(design: Design) -> list[Any]:
 
 def _colours(shape: Skin, fixed: int, coloured: bool) -> list[list[int]]:
     """Return the colour of each vertex, which belongs to quadrilaterals of one colour only."""
-    count = shape.vertices.shape[1]
-    if not coloured:
-        return [list(GREY)] * count
-    rgb = np.zeros((count, 3))
-    rgb[shape.quads] = colours(shape.ratio, shape.joint, fixed)[:, None]
+    from simulearn.show.style import GHOST, colours  # a server starts without matplotlib
+
+    rgb = np.zeros((shape.vertices.shape[1], 3))
+    if coloured:
+        rgb[shape.quads] = colours(shape.ratio, shape.joint, fixed)[:, None]
+    else:
+        rgb[:] = [int(GHOST[k : k + 2], 16) / 255 for k in (1, 3, 5)]
     found: list[list[int]] = np.rint(255 * rgb).astype(int).tolist()
     return found

@@ -103,16 +103,13 @@ def placement_of(points: Points, unit: Unit) -> tuple[Placement, list[Message]]:
 def _axes(points: Points, seen: Points) -> tuple[Points, Points]:
     """Return the axes x and y of a plane from points (n, 3) and how they are seen in it (n, 2)."""
     x, y = np.linalg.lstsq(points, seen, rcond=1e-6)[0].T
-    if np.linalg.norm(x) < np.linalg.norm(y):  # of points in one line only one axis is known
-        y = y / np.linalg.norm(y)
-        x = _across(y) if np.linalg.norm(x) < 0.5 else x - (x @ y) * y
-        return x / np.linalg.norm(x), y
-    x = x / np.linalg.norm(x)
-    y = _across(x) if np.linalg.norm(y) < 0.5 else y - (y @ x) * x
-    return x, y / np.linalg.norm(y)
-
-
-def _across(axis: Points) -> Points:
-    """Return the direction across a line in the least steep of the planes through it."""
-    normal = np.cross(axis, np.cross([0.0, 0.0, 1.0], axis))
-    return np.cross(normal if normal.any() else np.array([0.0, -1.0, 0.0]), axis)
+    if np.linalg.norm(np.cross(x, y)) > 0.5:
+        return x, y
+    # All points lie in one line, so that only their part along it is known.
+    along = max((x, y), key=lambda axis: float(np.linalg.norm(axis)))
+    along = along / np.linalg.norm(along)
+    normal = np.cross(along, np.cross([0.0, 0.0, 1.0], along))
+    across = np.cross(normal if normal.any() else [0.0, -1.0, 0.0], along)
+    across /= np.linalg.norm(across)
+    first, second = x @ along, y @ along
+    return first * along - second * across, second * along + first * across

@@ -9,6 +9,7 @@ import asyncio
 import base64
 from functools import cache
 from importlib.resources import files
+from time import monotonic
 from typing import Annotated, Any
 
 from fastapi import APIRouter, FastAPI, Query, Request, Response
@@ -100,10 +101,11 @@ def _component(pointer: str) -> Component:
 
 async def _solved(component: Component, body: Solve, request: Request) -> Response:
     simulations: Simulations = request.app.state.simulations
+    begun = monotonic()
     await _ready(simulations)
 
     def work(cancel: Cancel) -> Answer:
-        return _within_time(component, body, request.app, cancel)
+        return _within_time(component, body, request.app, Deadline(cancel, begun))
 
     answer = await simulations.run(request, work)
     response = json_response(answer.body)
@@ -111,9 +113,8 @@ async def _solved(component: Component, body: Solve, request: Request) -> Respon
     return response
 
 
-def _within_time(component: Component, body: Solve, app: FastAPI, cancel: Cancel) -> Answer:
+def _within_time(component: Component, body: Solve, app: FastAPI, deadline: Deadline) -> Answer:
     """Return the answer, or say that it takes too long."""
-    deadline = Deadline(cancel)
     try:
         return solve(component, body, app, deadline)
     except CancelledError as error:

@@ -20,19 +20,19 @@ class _Schema(BaseModel):
 class Item(_Schema):
     """A value: the name of its class in .NET, and the value as JSON in a text."""
 
-    type: str
-    data: str
+    type: str = ""
+    data: Any
 
 
 class Tree(_Schema):
     """The values of one parameter: lists by paths such as {0;1}."""
 
     name: str = Field(alias="ParamName")
-    branches: dict[str, list[Item]] = Field(alias="InnerTree")
+    branches: dict[str, list[Item]] | None = Field(alias="InnerTree", default=None)
 
 
 class Solve(_Schema):
-    """A request to compute and its answer; older versions of Hops leave fields out."""
+    """A request to compute; older versions of Hops leave fields out."""
 
     absolutetolerance: float = 0.0
     angletolerance: float = 0.0
@@ -43,8 +43,6 @@ class Solve(_Schema):
     cachesolve: bool = False
     recursionlevel: int = 0
     values: list[Tree] = []
-    warnings: list[str] = []
-    errors: list[str] = []
 
 
 def description(component: Component, icon: str) -> dict[str, Any]:
@@ -97,7 +95,7 @@ def solved(
     request: Solve, values: list[dict[str, Any]], warnings: list[str], errors: list[str]
 ) -> dict[str, Any]:
     """Return the answer to a request: its own fields, and what came of it."""
-    fields = request.model_dump(exclude={"values", "warnings", "errors"})
+    fields = request.model_dump(exclude={"values"})
     fields["modelunits"] = fields["modelunits"] or "Millimeters"
     for key in ("algo", "pointer"):
         fields[key] = fields[key] or ""

@@ -83,24 +83,34 @@ def solve(component: Component, request: Solve, app: FastAPI, cancel: Cancel) ->
     if len(runs) > most:
         text = f"{component.inputs[0].name} has {len(runs)} branches; at most {most} are taken"
         raise Problem(422, "too-many-branches", text, component.inputs[0].name)
-    done = _Sum()
+    done = _Sum(warnings=_unknown(component, request))
     for path, inputs in runs.items():
         _run(
             component, path, inputs, context, done, f"{path_text(path)}: " if len(runs) > 1 else ""
         )
     if done.problem is not None and not done.outputs:
-        problem = done.problem
+        problem, told = done.problem, bounded(done.errors)
         raise Problem(
             problem.status_code,
             problem.code,
             problem.detail,
             problem.where,
-            more={"errors": done.errors},
+            more={"messages": told},
         )
     values = [tree(one.name, _tree(one.name, done.outputs), one.kind) for one in component.outputs]
     settled = all(one.finished for one in done.outputs.values()) and done.problem is None
     body = solved(request, values, bounded(done.warnings), bounded(done.errors))
     return Answer(200 if settled else 202, body)
+
+
+def _unknown(component: Component, request: Solve) -> list[str]:
+    """Return what is said of values that no input takes."""
+    names = [one.name for one in component.inputs]
+    return [
+        f"{component.name} has no input {one.name[:40]}; its inputs are {', '.join(names)}"
+        for one in request.values
+        if one.name not in names
+    ]
 
 
 def bounded(messages: Sequence[str]) -> list[str]:

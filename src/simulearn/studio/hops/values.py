@@ -67,7 +67,8 @@ def branches(trees: Iterable[Tree], first: str) -> dict[Path, Inputs]:
         InputError: a path is none, or an input has no branch for one of the paths.
     """
     named = {
-        tree.name: {path_of(key): items for key, items in tree.branches.items()} for tree in trees
+        tree.name: {path_of(key): items for key, items in (tree.branches or {}).items()}
+        for tree in trees
     }
     paths = [path for path, items in named.get(first, {}).items() if items]
     found = {}
@@ -145,6 +146,8 @@ def coordinates(data: Any, place: str) -> list[float]:
 
 def parsed(item: Item) -> Any:
     """Return what an item holds; a text that is no JSON stands for itself."""
+    if not isinstance(item.data, str):
+        return item.data
     try:
         return json.loads(item.data)
     except (ValueError, RecursionError):
@@ -161,16 +164,23 @@ def tree(name: str, branches: Mapping[Path, Sequence[Any]], kind: Kind) -> dict[
     return {"ParamName": name, "InnerTree": inner}
 
 
-def _text(value: str) -> str:
-    """Return a text as JSON that Hops shows as it is.
+class Exact(str):
+    """A text of which no letter may change."""
 
-    Hops takes the quotes off and reads nothing else of JSON, unless the text is an object. So a
-    text is one line without double quotes, and its letters stand for themselves.
+
+def _text(value: str) -> str:
+    """Return a text so that Hops shows it as it is.
+
+    Hops takes the quotes at the ends off and reads nothing else of JSON, unless the text is an
+    object. So a text is one line without double quotes, which is JSON and stands for itself, too;
+    one that must keep its quotes stands for itself only.
     """
     if value.startswith("{"):
         return json.dumps(value)
-    plain = " ".join(value.split("\n")) if "\n" in value else value
-    return json.dumps(plain.replace('"', "'").replace("\\", "/"), ensure_ascii=False)
+    if isinstance(value, Exact) and ('"' in value or "\\" in value):
+        return f"{value} " if value.endswith('"') else value
+    plain = value.replace("\n", " ").replace('"', "'").replace("\\", "/")
+    return json.dumps(plain, ensure_ascii=False)
 
 
 def _point(value: Sequence[float]) -> str:
@@ -197,7 +207,7 @@ def _finite(value: float) -> bool:
 
 
 def _shown(item: Item) -> str:
-    return f"{item.data[:40]} ({item.type[:60]})"
+    return f"{str(item.data)[:40]} ({item.type[:60]})"
 
 
 def _place(name: str, index: int) -> str:

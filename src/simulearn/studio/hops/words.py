@@ -30,6 +30,9 @@ class InWordsOfHops:
         if scope["type"] != "http" or not _is_of_hops(scope["path"]):
             await self._app(scope, receive, send)
             return
+        # Hops asks for no compression, and a problem must be read here.
+        headers = [head for head in scope["headers"] if head[0] != b"accept-encoding"]
+        scope = {**scope, "headers": headers}
         begin: Message | None = None
         content = b""
 
@@ -44,9 +47,9 @@ class InWordsOfHops:
             content += event.get("body", b"")
             if not event.get("more_body"):
                 body = _answer(scope["method"], scope["path"], json.loads(content))
-                headers = MutableHeaders(scope=begin)
-                headers["content-type"] = "application/json"
-                headers["content-length"] = str(len(body))
+                changed = MutableHeaders(scope=begin)
+                changed["content-type"] = "application/json"
+                changed["content-length"] = str(len(body))
                 await send(begin)
                 await send({"type": "http.response.body", "body": body})
 
@@ -65,7 +68,8 @@ def _is_problem(event: MutableMapping[str, Any]) -> bool:
 
 def _answer(method: str, path: str, problem: dict[str, Any]) -> bytes:
     """Return what a request gets in place of a problem."""
-    told = [one["message"] for one in problem.get("errors", ())] or [problem["detail"]]
+    told = problem.get("messages") or [one["message"] for one in problem.get("errors", ())]
+    told = told or [problem["detail"]]
     describing = method in ("GET", "HEAD") or path.rstrip("/") == "/io"
     content = io_schema("", [], [], "", told) if describing else solved(Solve(), [], [], told)
     return json.dumps(content).encode()

@@ -7,7 +7,7 @@ from simulearn.studio.hops.components.shared import texts
 from simulearn.studio.hops.design import DRAWN, design_of
 from simulearn.studio.hops.parameters import NUMBER, TEXT, Component, Input, Output
 from simulearn.studio.hops.solving import Context, Outputs
-from simulearn.studio.hops.values import Inputs
+from simulearn.studio.hops.values import Exact, Inputs
 from simulearn.studio.routes.prints import ENDING
 
 PRINTER = Input(
@@ -35,7 +35,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     warnings = texts(job.warnings)
     return Outputs(
         {
-            "Text": job.gcode.splitlines(),
+            "Text": [Exact(line) for line in job.gcode.splitlines()],
             "File": [f"{stem}{ENDING}"],
             "Time": [job.estimate.seconds],
             "Heating": [job.estimate.heating_seconds],

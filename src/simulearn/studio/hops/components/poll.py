@@ -52,7 +52,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
         except (InputError, ComputationError) as error:
             warnings.append(f"no mesh: {error}")
         else:
-            values["Mesh"] = [meshes.mesh(meshes.surface(result), LAST, design)]
+            values["Mesh"] = [meshes.mesh(meshes.surface(result, LAST), LAST, design)]
             warnings += told(result)
     values["Messages"] = list(dict.fromkeys(warnings))
     errors = [_why(problem)] if problem is not None else []

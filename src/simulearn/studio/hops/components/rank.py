@@ -31,7 +31,9 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     ranking = rank(task, engine_of(task.engine), cancel=context.cancel)
     best = [design.changed(one.grid) for one in ranking.best]
     results = simulated([one.grid for one in best], task.engine, settings, context.cancel)
-    shapes = [meshes.mesh(meshes.surface(r), LAST, d) for r, d in zip(results, best, strict=True)]
+    shapes = [
+        meshes.mesh(meshes.surface(r, LAST), LAST, d) for r, d in zip(results, best, strict=True)
+    ]
     qualities = list(dict.fromkeys(text for result in results for text in told(result)))
     length = design.placement.length
     return Outputs(

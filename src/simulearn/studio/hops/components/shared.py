@@ -43,11 +43,11 @@ class Deadline:
 
     Args:
         cancel: the request's own.
-        seconds: that it may take.
+        begun: when it came, by the monotonic clock.
     """
 
-    def __init__(self, cancel: Cancel, seconds: float = PATIENCE) -> None:
-        self._cancel, self._end = cancel, monotonic() + seconds
+    def __init__(self, cancel: Cancel, begun: float) -> None:
+        self._cancel, self._end = cancel, begun + PATIENCE
 
     @property
     def overdue(self) -> bool:

@@ -46,13 +46,12 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     design = design_of(inputs, context.modelunits, settings)
     engine = inputs.text(ENGINE.name, "learned")
     (result,) = simulated([design.grid], engine, settings, context.cancel)
-    shape = meshes.surface(result)
     warnings = told(result)
     bound = result.bound_mm
     return Outputs(
         {
-            "Mesh": [meshes.mesh(shape, frame, design)],
-            "Flat": [meshes.mesh(shape, 0, design, coloured=False)],
+            "Mesh": [meshes.mesh(meshes.surface(result, frame), frame, design)],
+            "Flat": [meshes.mesh(meshes.surface(result, 0), 0, design, coloured=False)],
             "Joints": design.outside(result.centres[frame]),
             "Axes": meshes.axes(result, frame, design),
             "Ratios": result.grid.actuators.tolist(),

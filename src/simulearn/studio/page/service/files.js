@@ -7,7 +7,7 @@ import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
 import { showDrawing } from "./drawings.js";
 
-const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,application/json,image/svg+xml";
+const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,.html,application/json,image/svg+xml";
 const PASTED = [[/^<(svg|\?xml|!--)/, "common.pastedDrawing"], [/^[{[]/, "common.pasted"]]; // how it begins
 const LATE = 300; // ms after which the page says that it reads a file
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
