@@ -100,8 +100,8 @@ DROP = """([name, text]) => {
     new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer }));
 }"""
 # As people draw: lines that end short of others, run past them, cross them and end on them.
-SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" width="195mm" height="130mm" viewBox="0 0 195 130"
-  xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" fill="none">
+SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" viewBox="0 0 195 130"
+  xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" width="195mm" height="130mm">
   <g inkscape:groupmode="layer" inkscape:label="passive" stroke="#dcdcdc">
     <path d="M0 0H194.6M0 65H195.7M0 130H195M130 65V130"/>
     <text x="5" y="20">front</text>
