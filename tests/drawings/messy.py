@@ -171,11 +171,17 @@ def places_of(lines: list[np.ndarray]) -> list[tuple]:
     return sorted(tuple(sorted(map(tuple, (np.round(line, 2) + 0.0).tolist()))) for line in lines)
 
 
+def at_the_origin(lines: list[np.ndarray]) -> list[np.ndarray]:
+    """Return lines with the lower left corner of all at the origin."""
+    corner = np.concatenate([np.asarray(line) for line in lines]).min(axis=0)
+    return [np.asarray(line) - corner for line in lines]
+
+
 def same(grid, lines: list[np.ndarray], within: float = 0.01) -> bool:
-    """Return whether a grid has exactly the beams of clean lines, within mm."""
+    """Return whether a grid has exactly the beams of clean lines moved to the origin, within mm."""
     if len(grid.beams) != len(lines):
         return False
-    left = [np.asarray(line) for line in lines]
+    left = at_the_origin(lines)
     for pair in grid.beams:
         ends = grid.joints[pair]
         for k, line in enumerate(left):

@@ -83,10 +83,25 @@ def test_the_width_goes_before_every_unit():
         grid_of(drawing(l_grid()), Options(width=0))
 
 
-def test_a_drawing_far_away_is_moved_and_that_is_told():
-    result = grid_of(drawing([line + np.array([5e5, -3e6]) for line in l_grid()]))
+def test_the_lower_left_corner_becomes_the_origin_and_that_is_told():
+    far = [line + np.array([5e5, -3e6]) for line in l_grid()]
+    result = grid_of(drawing(far))
+    np.testing.assert_allclose(result.grid.joints.min(axis=0), 0, atol=1e-9)
     assert same(result.grid, l_grid())
-    assert codes(result)["moved"].startswith("moved by -500000, 3e+06 mm")
+    assert codes(result)["moved"].startswith("moved by [-500000, 3e+06] mm")
+    # The same where it would stay, since such coordinates are none of a grid.
+    assert "moved" in codes(grid_of(drawing(far), Options(place="drawn")))
+
+
+def test_a_grid_can_stay_where_it_is_drawn():
+    lines = [line + np.array([30, -40]) for line in l_grid()]
+    result = grid_of(drawing(lines), Options(place="drawn"))
+    np.testing.assert_allclose(result.grid.joints.min(axis=0), [30, -40])
+    assert "moved" not in codes(result)
+    moved = grid_of(drawing(lines))
+    assert codes(moved)["moved"] == (
+        "moved by [-30, 40] mm, so that its lower left corner is the origin"
+    )
 
 
 # The rest is about planes.
