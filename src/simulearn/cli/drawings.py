@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from simulearn.drawings.importing import Imported
 
 # Messages that a person should look at; the others only say what was taken.
-WARNINGS = ("size-odd", "actuator-near-miss", "actuators-mixed", "curves", "reader", "moved")
+WARNINGS = ("size-odd", "actuator-near-miss", "actuators-mixed", "curves", "reader")
 
 
 @app.command("import")
@@ -53,6 +53,10 @@ def import_(
         list[str] | None,
         typer.Option(metavar="CODE", help="Leave this as drawn, as gap or leaf; may be repeated."),
     ] = None,
+    place: Annotated[
+        Literal["corner", "drawn"],
+        typer.Option(help="Lower left corner at the origin, or where it is drawn."),
+    ] = "corner",
     material: Annotated[str, typer.Option(help="Name of the material.")] = "pla-hot-water",
     as_json: Annotated[bool, typer.Option("--json", help="Print the machine form.")] = False,
 ) -> None:
@@ -69,6 +73,7 @@ def import_(
         tolerance=tolerance,
         without=frozenset(code.strip() for codes in without or () for code in codes.split(",")),
         material=material,
+        place=place,
     )
     data = _contents(file)
     if _same(file, output):
