@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-import tinycss2  # type: ignore[import-untyped]
+import tinycss2
 
 from simulearn.drawings.svg.tree import Element
 from simulearn.errors import InputError
