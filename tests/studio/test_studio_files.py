@@ -171,7 +171,7 @@ def export(client, ending, **more):
     return client.post("/api/export", {"grid": SADDLE, "format": ending, **more})
 
 
-@pytest.mark.parametrize("ending", [e for e in WRITERS if e != ".gif"])
+@pytest.mark.parametrize("ending", [e for e in WRITERS if e not in (".gif", ".mp4", ".webm")])
 def test_every_format(client, solved, ending):
     answer = export(client, ending, name="Sättel 日本")
     assert answer.status_code == 200
