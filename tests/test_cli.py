@@ -701,3 +701,14 @@ def test_a_saddle_by_finite_elements(tmp_path):
     # The saddle is symmetric under half a turn about its middle.
     last = result.centres[-1]
     np.testing.assert_allclose(last[::-1] * [-1, -1, 1], last, atol=1e-6)
+
+
+@pytest.mark.parametrize("width", ["80", "40"])
+def test_figures_of_a_set_are_whole_on_a_narrow_terminal(run, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", width)
+    code, out, _ = run("dataset", "info", Path(__file__).parent / "data" / "sample.h5")
+    assert code == 0
+    assert "…" not in out
+    table = out[out.index("mean") :].splitlines()
+    assert max(len(line.rstrip()) for line in table) <= 80
+    assert "the paper's dimension: mean 94.44, 3 % 65.64, 96 % 124.39 mm" in out

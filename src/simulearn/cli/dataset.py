@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
-from rich.table import Table
 
 from simulearn.cli.base import Json, app, err, out
 from simulearn.cli.progress import bar, counting
@@ -20,8 +19,6 @@ if TYPE_CHECKING:
 
 dataset = typer.Typer(help="Generate, pack and inspect data sets.", no_args_is_help=True)
 app.add_typer(dataset, name="dataset")
-
-NARROWEST = 72  # characters, in which all figures fit
 
 Packed = Annotated[Path, typer.Argument(metavar="FILE", help="A packed data set (.h5).")]
 
@@ -132,9 +129,7 @@ def info(
         print(json.dumps(figures))
         return
     out.print(_heading(data, figures))
-    table = _quantities(figures["quantities"])
-    out.print(table, width=max(out.width, NARROWEST), crop=False)
-    for line in _of_paper(figures["quantities"]):
+    for line in (*_quantities(figures["quantities"]), *_of_paper(figures["quantities"])):
         out.print(line)
     if output is not None:
         out.print(f"wrote {escape(str(output))}")
@@ -158,15 +153,15 @@ def _heading(data: "Dataset", figures: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _quantities(figures: dict[str, dict[str, Any]]) -> Table:
-    table = Table(box=None)
-    for name in ("", "mean", "least", "3 %", "median", "97 %", "most"):
-        table.add_column(name, justify="right" if name else "left", no_wrap=True)
+def _quantities(figures: dict[str, dict[str, Any]]) -> Iterator[str]:
+    """Yield the lines of a table; a table of Rich's would cut figures off on a narrow terminal."""
+    titles = {name: f"{_title(name)} {q['unit']}".strip() for name, q in figures.items()}
+    wide = max(map(len, titles.values()))
+    heads = ("mean", "least", "3 %", "median", "97 %", "most")
+    yield " " * wide + "".join(f"{head:>8}" for head in heads)
     for name, q in figures.items():
         row = [q[key] for key in ("mean", "p0", "p3", "p50", "p97", "p100")]
-        words = f"{_title(name)} {q['unit']}".strip()
-        table.add_row(words, *(f"{value:.2f}" for value in row))
-    return table
+        yield f"{titles[name]:<{wide}}" + "".join(f"{value:>8.2f}" for value in row)
 
 
 def _of_paper(figures: dict[str, dict[str, Any]]) -> Iterator[str]:

@@ -82,7 +82,9 @@ def validation_of(grid: Grid, model: str | None) -> Validation:
         return validated(grid)
     from simulearn.learn.common.bundle import bundle_of
 
-    training = bundle_of(model).card.range
+    bundle = bundle_of(model)
+    bundle.check()
+    training = bundle.card.range
     return validate(grid, load_material(grid.material), training=training)
 
 
