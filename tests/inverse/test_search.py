@@ -296,7 +296,7 @@ def test_it_is_told_that_nothing_comes_near_and_why(task, engines, scale, words)
     if words:
         assert words in told[0]
         assert f"({found.error_mm:.0f} mm are left)" in told[0]
-    if scale < 1:
+    if scale < 0.1:
         assert "if they are in metres, multiply them by 1000" in found.warnings[0].message
 
 
