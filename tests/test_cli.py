@@ -491,7 +491,7 @@ def test_a_binary_file_is_refused(run, tmp_path):
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("out.xyz", "is not one of .json .npz .png .pdf .svg .gif .glb .stl .vtu .pvd"),
+        ("out.xyz", "is not one of .json .npz .csv .png .pdf .svg .gif .html "),
         ("out", "is not one of"),
         ("none/out.json", "the folder none does not exist"),
         ("folder.png", "is a folder"),

@@ -4,7 +4,7 @@ All files are checked before anything is computed: a wrong name should not cost 
 """
 
 import importlib.util
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 
@@ -29,10 +29,34 @@ def _animation(result: Result, path: Path, cancel: Cancel | None = None) -> None
     animate(result, path, cancel=cancel)
 
 
+def _page(result: Result, path: Path) -> None:
+    from simulearn.interop import write_html
+
+    write_html(result, path)
+
+
 def _surface(result: Result, path: Path) -> None:
     from simulearn.interop import write_surface
 
     write_surface(result, path)
+
+
+def _morph(result: Result, path: Path) -> None:
+    from simulearn.interop import write_morph
+
+    write_morph(result, path)
+
+
+def _rhino(result: Result, path: Path) -> None:
+    from simulearn.interop import write_3dm
+
+    write_3dm(result, path)
+
+
+def _table(result: Result, path: Path) -> None:
+    from simulearn.interop import write_csv
+
+    write_csv(result, path)
 
 
 def _vtu(result: Result, path: Path) -> None:
@@ -50,16 +74,47 @@ def _pvd(result: Result, path: Path) -> None:
 WRITERS: dict[str, Writer] = {
     ".json": write_json,
     ".npz": write_npz,
+    ".csv": _table,
     ".png": _figure,
     ".pdf": _figure,
     ".svg": _figure,
     ".gif": _animation,
+    ".html": _page,
+    ".mp4": _animation,
+    ".webm": _animation,
     ".glb": _surface,
+    ".morph.glb": _morph,
+    ".3dm": _rhino,
     ".stl": _surface,
+    ".obj": _surface,
+    ".ply": _surface,
     ".vtu": _vtu,
     ".pvd": _pvd,
 }
-NEEDS = {".vtu": ("meshio", "vtk"), ".pvd": ("meshio", "vtk")}  # package, extra
+NEEDS = {  # ending -> package, extra
+    ".html": ("nicegui", "studio"),
+    ".3dm": ("rhino3dm", "rhino"),
+    ".vtu": ("meshio", "vtk"),
+    ".pvd": ("meshio", "vtk"),
+}
+FILMS = (".mp4", ".webm")
+
+
+def ending_of(path: Path, known: Iterable[str] = WRITERS) -> str:
+    """Return the ending that a file's name has, the longest one that is known.
+
+    Args:
+        path: the file; capitals count as small letters.
+        known: endings, each with its point.
+
+    Raises:
+        InputError: the name has none of them.
+    """
+    name = path.name.lower()
+    found = [ending for ending in known if name.endswith(ending) and name != ending]
+    if not found:
+        raise InputError(f"{path}: the ending is not one of {' '.join(known)}")
+    return max(found, key=len)
 
 
 def check(paths: Sequence[Path], grid: Path | None = None) -> None:
@@ -73,14 +128,30 @@ def check(paths: Sequence[Path], grid: Path | None = None) -> None:
         InputError: an ending is unknown, a package is missing, or a place cannot be written.
     """
     for path in paths:
-        ending = path.suffix.lower()
-        if ending not in WRITERS:
-            raise InputError(f"{path}: the ending is not one of {' '.join(WRITERS)}")
-        if ending in NEEDS and importlib.util.find_spec(NEEDS[ending][0]) is None:
-            raise InputError(
-                f"{path}: needs a package: pip install 'simulearn[{NEEDS[ending][1]}]'"
-            )
+        check_package(path, ending_of(path))
         check_place(path, [grid] if grid is not None else [])
+
+
+def check_package(path: Path, ending: str) -> None:
+    """Make sure that what writes a file is installed.
+
+    Args:
+        path: the file.
+        ending: its ending.
+
+    Raises:
+        InputError: a package or program is missing; the message says how to install it.
+    """
+    if ending in NEEDS and importlib.util.find_spec(NEEDS[ending][0]) is None:
+        text = f"{path}: needs a package: pip install 'simulearn[{NEEDS[ending][1]}]'"
+        raise InputError(text, "package-missing")
+    if ending in FILMS:
+        from simulearn.show.video import ffmpeg
+
+        try:
+            ffmpeg()
+        except InputError as error:
+            raise InputError(f"{path}: {error}", error.code) from error
 
 
 def check_place(path: Path, sources: Sequence[Path] = ()) -> None:
@@ -120,7 +191,7 @@ def write(result: Result, path: Path, cancel: Cancel | None = None) -> None:
         CancelledError: the token was set.
     """
     stop_if(cancel)
-    writer = WRITERS[path.suffix.lower()]
+    writer = WRITERS[ending_of(path)]
     if writer is _animation:
         _animation(result, path, cancel)
     else:

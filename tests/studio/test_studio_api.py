@@ -10,9 +10,9 @@ from asking import Client, awaited, problem, raw
 
 from simulearn.errors import CancelledError
 from simulearn.grid import Grid, grid_to_dict, lattice, make
+from simulearn.interop import frames
 from simulearn.inverse import rank, task_from_dict
 from simulearn.simulate import engine, outcome_to_dict
-from simulearn.studio import frames
 from simulearn.studio.routes import designs
 from simulearn.studio.settings import Settings
 

@@ -35,7 +35,8 @@ def gcode_(
             "-o",
             "--output",
             help="A file to write (repeat for more); its ending picks what: .gcode .gco .g the "
-            "print; .png .pdf .svg a picture of its layers; .json the toolpath.",
+            "print; .png .pdf .svg a picture of its layers; .json the toolpath; "
+            ".3dm grids and toolpath for Rhino.",
         ),
     ] = None,
     layer: Annotated[
@@ -57,7 +58,7 @@ def gcode_(
     if not as_json:
         warn(job.warnings)
     for path in files:
-        WRITERS[path.suffix.lower()](job, path, layer)
+        WRITERS[outputs.ending_of(path, WRITERS)](job, path, layer)
     if as_json:
         print(json.dumps({"files": [str(path) for path in files]} | job.facts, allow_nan=False))
         return
@@ -129,6 +130,12 @@ def _data(job: "Job", path: Path, layer: int | None) -> None:
         temporary.write_text(json.dumps(data, allow_nan=False) + "\n", encoding="utf-8")
 
 
+def _rhino(job: "Job", path: Path, layer: int | None) -> None:
+    from simulearn.interop import write_job_3dm
+
+    write_job_3dm(job, path)
+
+
 Writer = Callable[["Job", Path, int | None], None]
 WRITERS: dict[str, Writer] = {
     ".gcode": _print,
@@ -138,14 +145,14 @@ WRITERS: dict[str, Writer] = {
     ".pdf": _picture,
     ".svg": _picture,
     ".json": _data,
+    ".3dm": _rhino,
 }
 
 
 def _check(files: list[Path], grids: list[Path]) -> None:
     """Make sure that all files can be written before anything is computed."""
     for path in files:
-        if path.suffix.lower() not in WRITERS:
-            raise InputError(f"{path}: the ending is not one of {' '.join(WRITERS)}")
+        outputs.check_package(path, outputs.ending_of(path, WRITERS))
         outputs.check_place(path, grids)
 
 

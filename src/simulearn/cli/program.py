@@ -20,6 +20,7 @@ from rich.markup import escape
 from simulearn import __version__
 from simulearn.cli import (  # noqa: F401  (they add their commands)
     dataset,
+    drawings,
     fabricate,
     grids,
     inverse,
@@ -34,9 +35,13 @@ from simulearn.files import NO_ROOM, cache_folder
 HINTS = {  # what helps on the command line, by the code of an error
     "no-answer": "--engine fea may have one",
     "not-a-grid": "`simulearn import` makes grids of drawings, lists of lines and graphs",
-    "not-flat": "`simulearn import` makes grids of drawings in any plane",
+    "joints-in-space": "`simulearn import` makes grids of drawings in any plane",
     "material-not-learnt": "--engine fea simulates any material, and `simulearn train` learns one",
     "engine-not-differentiable": "--method default takes any engine",
+    "unit-unknown": "--unit says which it is, or --width how many mm the drawing is wide",
+    "unit-name": "--unit mm and --unit in are examples",
+    "curves-only": "--flatten 0.5 keeps them within 0.5 mm",
+    "not-flat": "--without plane reads the lines as seen from above",
     "port-taken": "without --port a free one is found",
 }
 

@@ -10,6 +10,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
+from simulearn import outputs
 from simulearn.cli.base import (
     Json,
     MaterialOption,
@@ -48,15 +49,13 @@ def simulate(
             "-o",
             "--output",
             help="A file to write (repeat for more); its ending picks the format: "
-            ".json .npz .png .pdf .svg .gif .glb .stl .vtu .pvd. For several grids: a folder, "
-            "which gets a .json for each.",
+            f"{' '.join(outputs.WRITERS)}. For several grids: a folder, which gets a .json for "
+            "each.",
         ),
     ] = None,
     as_json: Json = False,
 ) -> None:
     """Simulate grids: twelve frames, from flat through release to creep."""
-    from simulearn import outputs
-
     targets = output or []
     files = [Path(target) for target in targets]
     names = list(dict.fromkeys(grids))
@@ -86,7 +85,6 @@ def _one(
     as_json: bool,
 ) -> None:
     """Simulate one grid, and write it to files."""
-    from simulearn import outputs
     from simulearn.simulate import one, remarks, result_to_dict, summary
 
     before = validation_of(design, {"learned": model or "default"}.get(engine)).warnings
@@ -117,7 +115,6 @@ def _many(
     as_json: bool,
 ) -> None:
     """Simulate many grids; each outcome is written as soon as it is there."""
-    from simulearn import outputs
     from simulearn.simulate import Failure, Result, outcome_to_dict, write_json
 
     if folder is not None:

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from simulearn.display import Displayed
 from simulearn.errors import InputError
 from simulearn.grid.arrays import KEYS, index, indices, numbers, places, shown
 
@@ -32,7 +33,7 @@ class Support:
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class Grid(Displayed):
     """A flat grid of printed beams.
 
     Attributes:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.display import Displayed
 from simulearn.errors import Message
 from simulearn.grid.checks import (
     ONE_PLACE,
@@ -47,7 +48,7 @@ MOST_NAMED = 1000
 
 
 @dataclass(frozen=True)
-class Validation:
+class Validation(Displayed):
     """The errors and warnings about a design.
 
     Attributes:

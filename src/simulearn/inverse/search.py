@@ -13,6 +13,7 @@ from time import monotonic
 
 import numpy as np
 
+from simulearn.display import Displayed
 from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check, check
@@ -46,7 +47,7 @@ CHECKING = 0.25  # s for each beam that a check takes, until one has been measur
 
 
 @dataclass(frozen=True, eq=False)
-class SearchResult:
+class SearchResult(Displayed):
     """The result of a search.
 
     Attributes:

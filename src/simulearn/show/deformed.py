@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 SPACING = 2.0  # mm, length of the quadrilaterals along a beam
 # An edge stands this far (mm) before its face, so that the next faces do not paint over half of it.
 LIFT = 1.3 * SPACING
+RIM, EDGE = 0.35, 0.55  # points, line weights of faces and edges
 
 
 def draw_deformed(
@@ -49,6 +50,41 @@ def draw_skin(
     ax: Axes, vertices: Array, surface: Skin, fixed: int, camera: Camera
 ) -> PolyCollection:
     """Draw a skin with its vertices (V, 3) where they are now, and return what was drawn."""
+    faces, rgb, lines, order = painted(vertices, surface, fixed, camera)
+    ink = np.array(to_rgb(style.INK))
+    shapes = [*faces, *lines]
+    fill = np.concatenate([np.c_[rgb, np.ones(len(rgb))], np.zeros((len(lines), 4))])
+    # A face's own colour around it closes the hairlines between neighbours.
+    rims = np.concatenate([rgb, np.tile(ink, (len(lines), 1))])
+    widths = np.repeat([RIM, EDGE], [len(rgb), len(lines)])
+    drawn = PolyCollection(
+        [shapes[k] for k in order],
+        facecolors=fill[order],
+        edgecolors=rims[order],
+        linewidths=widths[order],
+        joinstyle="round",
+        capstyle="round",
+        zorder=2,
+    )
+    ax.add_collection(drawn, autolim=False)
+    return drawn
+
+
+def painted(
+    vertices: Array, surface: Skin, fixed: int, camera: Camera
+) -> tuple[Array, Array, Array, NDArray[np.int64]]:
+    """Return what a painter draws of a skin.
+
+    Args:
+        vertices: (V, 3) where its vertices are now.
+        surface: the skin.
+        fixed: the fixed joint.
+        camera: where the viewer is.
+
+    Returns:
+        faces (Q, 4, 2) that are turned to the viewer, mm to the right and up; their colours (Q, 3);
+        edges (E, 2, 2); and the order in which to draw faces and edges, numbered after the faces.
+    """
     corners = vertices[surface.quads]
     normals = _normals(corners)
     front = normals @ camera.axes[2] > 0
@@ -61,24 +97,8 @@ def draw_skin(
     lines = _sharp_edges(projected, sharp)
     depth = projected[..., 2].mean(axis=1)
     above = np.maximum(lines[..., 2].mean(axis=1), depth[np.nonzero(sharp)[0]]) + LIFT
-    ink = np.array(to_rgb(style.INK))
-    shapes = [*projected[..., :2], *lines[..., :2]]
     order = np.argsort(np.concatenate([depth, above]))
-    faces = np.concatenate([np.c_[rgb, np.ones(len(rgb))], np.zeros((len(lines), 4))])
-    # A face's own colour around it closes the hairlines between neighbours.
-    rims = np.concatenate([rgb, np.tile(ink, (len(lines), 1))])
-    widths = np.repeat([0.35, 0.55], [len(rgb), len(lines)])
-    drawn = PolyCollection(
-        [shapes[k] for k in order],
-        facecolors=faces[order],
-        edgecolors=rims[order],
-        linewidths=widths[order],
-        joinstyle="round",
-        capstyle="round",
-        zorder=2,
-    )
-    ax.add_collection(drawn, autolim=False)
-    return drawn
+    return projected[..., :2], rgb, lines[..., :2], order
 
 
 def extent(surface: Skin, camera: Camera, frames: list[int]) -> tuple[Array, Array]:

@@ -24,6 +24,7 @@ RING = np.array(
 HALF = np.array([-1, -1, 1, 1, 1, -1])  # of the strip between ring points k and k + 1
 
 
+SLIVER = 1e-3  # mm, the least length of a quadrilateral along a beam
 SEAM = (2, 5)  # ring points on the mid-plane, where the surface has no edge
 
 
@@ -122,10 +123,14 @@ def _beam(result: Result, b: int, spacing: float) -> list[_Patch]:
     ratio = float(result.grid.actuators[b])
     middle = result.beams[0, b].mean(axis=1)
     length = float(np.linalg.norm(middle[2] - middle[0]))
-    stops = np.unique(np.clip([0, (1 - abs(ratio)) / 2, (1 + abs(ratio)) / 2, 1], 0, 1))
+    rest = max(0.0, (1 - abs(ratio)) / 2)
+    rest = rest if rest * length > SLIVER else 0.0
+    stops = np.unique([0, rest, 1 - rest, 1])
     patches = []
     for a, z in pairwise(stops):
-        t = np.linspace(a, z, 1 + max(1, int(np.ceil((z - a) * length / spacing))))
+        n = max(1, int(np.ceil((z - a) * length / spacing)))
+        n += n % 2 if a < 0.5 < z else 0  # the middle section's corners are vertices
+        t = np.linspace(a, z, 1 + n)
         ring = np.einsum("rc,fncx->fnrx", RING, edges(result, b, t))
         active = ratio != 0 and abs(a + z - 1) < abs(ratio)  # the run whose centre is inside
         for k in range(6):

@@ -13,12 +13,14 @@ from simulearn.simulate import Result
 # Matplotlib is made for one thread; others wait for their turn.
 _drawing = threading.Lock()
 SEVERAL = (".pvd",)  # formats of more than one file
+NAMED = (*SEVERAL, ".html")  # formats that say their own name, which then is what the person wants
 TYPES = {
     ".json": "application/json",
     ".png": "image/png",
     ".pdf": "application/pdf",
     ".svg": "image/svg+xml",
     ".gif": "image/gif",
+    ".html": "text/html; charset=utf-8",
     ".glb": "model/gltf-binary",
     ".stl": "model/stl",
     ".zip": "application/zip",
@@ -57,8 +59,7 @@ def exported(
     """
     with TemporaryDirectory(prefix="simulearn-") as folder:
         several = ending in SEVERAL
-        # Where the files name one another, their names are what the person wants.
-        path = Path(folder) / f"{stem if several else 'result'}{ending}"
+        path = Path(folder) / f"{stem if ending in NAMED else 'result'}{ending}"
         with _drawing:
             outputs.write(result, path, cancel)
         data = _zipped(Path(folder)) if several else path.read_bytes()

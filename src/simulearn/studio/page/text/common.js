@@ -172,6 +172,7 @@ export const common = {
     format_pdf: "The picture for papers and printing",
     format_svg: "The picture as a drawing to edit",
     format_gif: "The morphing as an animation",
+    format_html: "A page that plays the morph in any browser, without a network",
     format_glb: "The surface in 3D, for viewers and Blender",
     format_stl: "The surface in 3D, for CAD and slicers",
     format_vtu: "The last frame with stresses, for ParaView",
@@ -191,6 +192,10 @@ export const common = {
     openNotes: "{file} is open",
     openMended: "Some things were changed or left out:",
     pasted: "pasted.json",
+    pastedDrawing: "pasted.svg",
+    opening: "Reading {file}…",
+    dropHere: "Drop a design, or a drawing of another program",
+    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ or JSON",
     unknownTitle: "No design at this address",
     unknownText:
       "The server does not know the design of this address, and this browser has no copy. Here is an "
@@ -420,6 +425,7 @@ export const common = {
     format_pdf: "Das Bild für Texte und zum Drucken",
     format_svg: "Das Bild als Zeichnung zum Bearbeiten",
     format_gif: "Die Verformung als Animation",
+    format_html: "Eine Seite, die die Verformung in jedem Browser abspielt, ohne Netz",
     format_glb: "Die Oberfläche in 3D, für Betrachter und Blender",
     format_stl: "Die Oberfläche in 3D, für CAD und Slicer",
     format_vtu: "Das letzte Bild mit Spannungen, für ParaView",
@@ -441,6 +447,10 @@ export const common = {
     openNotes: "{file} ist geöffnet",
     openMended: "Einiges wurde geändert oder weggelassen:",
     pasted: "eingefuegt.json",
+    pastedDrawing: "eingefuegt.svg",
+    opening: "{file} wird gelesen …",
+    dropHere: "Einen Entwurf oder die Zeichnung eines anderen Programms ablegen",
+    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ oder JSON",
     unknownTitle: "Kein Entwurf an dieser Adresse",
     unknownText:
       "Der Server kennt den Entwurf dieser Adresse nicht, und dieser Browser hat keine Kopie. Hier ist "
