@@ -12,7 +12,7 @@ import os
 import re
 import secrets
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -40,7 +40,19 @@ def cache_folder() -> Path | None:
 
     None where there is no such folder, as for a user without a home.
     """
-    path = Path(platformdirs.user_cache_dir("simulearn", appauthor=False))
+    return _own_folder(platformdirs.user_cache_dir)
+
+
+def data_folder() -> Path | None:
+    """Return the folder for what this user makes; None where there is none, as without a home."""
+    return _own_folder(platformdirs.user_data_dir)
+
+
+def _own_folder(of_platform: Callable[..., str]) -> Path | None:
+    try:
+        path = Path(of_platform("simulearn", appauthor=False))
+    except (RuntimeError, OSError, KeyError):  # no home can be found
+        return None
     return path if path.is_absolute() else None
 
 

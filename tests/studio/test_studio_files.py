@@ -134,7 +134,7 @@ from_one = [[i + 1, j + 1] for i, j in SADDLE["beams"]]
         ({"schema": "simulearn.failure/1"}, "file-kind", "no design"),
         (SADDLE | {"schema": "simulearn.grid/2"}, "file-version", "simulearn.grid/1"),
         ({"joints": [], "beams": []}, "grid-file", "schema is missing"),
-        (SADDLE | {"joints": [[0, 0, 5]] * 9}, "not-flat", "z is not 0"),
+        (SADDLE | {"joints": [[0, 0, 5]] * 9}, "joints-in-space", "z is not 0"),
         (SADDLE | {"beams": from_one}, "beam-index", "subtract 1"),
         (SADDLE | {"material": "/etc/passwd"}, "material-path", "name"),
         (TASK | {"goals": [GOAL | {"target": [1]}]}, "task", "goals[0].target"),

@@ -66,7 +66,7 @@ def places(values: Any) -> NDArray[np.float64]:
         if not all(_is_number(_plain(x)) for x in entry):
             raise InputError(text, "joint-place", where)
         if abs(entry[2]) > FLAT:
-            raise InputError(text + NOT_FLAT, "not-flat", where)
+            raise InputError(text + NOT_FLAT, "joints-in-space", where)
     return numbers([e[:2] if _in_space(e) else e for e in entries], "joints", 2)
 
 
