@@ -93,6 +93,38 @@ def drawing(page: Page) -> None:
     page.mouse.move(*at(page, 20, -20), steps=8)
 
 
+DROP = """([name, text]) => {
+  const dataTransfer = new DataTransfer();
+  dataTransfer.items.add(new File([text], name));
+  document.querySelector(".page").dispatchEvent(
+    new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer }));
+}"""
+# As people draw: lines that end short of others, run past them, cross them and end on them.
+SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" viewBox="0 0 195 130"
+  xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" width="195mm" height="130mm">
+  <g inkscape:groupmode="layer" inkscape:label="passive" stroke="#dcdcdc">
+    <path d="M0 0H194.6M0 65H195.7M0 130H195M130 65V130"/>
+    <text x="5" y="20">front</text>
+  </g>
+  <g inkscape:groupmode="layer" inkscape:label="top 0.75" stroke="#db7525">
+    <path d="M0 0V64.7M195 0V130M65 0.3V65.4"/>
+  </g>
+  <g inkscape:groupmode="layer" inkscape:label="bottom 0.5" stroke="#4a9bc8">
+    <path d="M0 65V130M130 0V65M65 130V65.2"/>
+  </g>
+</svg>"""
+
+
+def importing(page: Page) -> None:
+    """A drawing has been dropped, and the places of one kind of mend are shown."""
+    page.evaluate(DROP, ["roof panel.svg", SKETCH])
+    gaps = page.get_by_role("button", name="gaps closed")
+    gaps.wait_for()
+    page.locator(".notice").get_by_role("button", name="Close").click()
+    page.wait_for_timeout(2000)
+    gaps.hover()
+
+
 def error(page: Page) -> None:
     """An actuator is too short."""
     page.evaluate(
@@ -150,6 +182,7 @@ STATES: dict[str, tuple[tuple[int, int], Shot]] = {
     "library": (WIDE, library),
     "beam": (WIDE, beam),
     "drawing": (WIDE, drawing),
+    "import": (WIDE, importing),
     "error": (WIDE, error),
     "goals": (WIDE, goals),
     "suggestion": (WIDE, suggestion),

@@ -21,7 +21,7 @@ import numpy as np
 from browsing import running
 from report import Report
 from simulearn.grid import Grid, Rules, draw_valid, grid_to_dict
-from simulearn.studio.frames import MEDIA_TYPE
+from simulearn.interop.frames import MEDIA_TYPE
 
 PAUSE = 0.4  # s, mean, between two changes of one user
 Spent = dict[str, list[float]]

@@ -3,11 +3,15 @@
 import dataclasses
 import errno
 import gc
+import io
 import json
+import logging
+import os
 import signal
 import subprocess
 import sys
 import time
+import warnings
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -137,8 +141,13 @@ def test_warnings_are_shown_and_do_not_stop(run, tmp_path):
     path.write_text(json.dumps(grid_to_dict(make("saddle", length=120))))
     code, _, err = run("simulate", path)
     assert code == 0
-    assert err.count("warning") == 12
-    assert "beam 3 is 120.00 mm long" in err
+    (line,) = err.splitlines()  # of many alike, one line
+    assert line == (
+        "warning: beam 0 is 120.00 mm long; the limit is 100 mm "
+        "(and 11 more: beams 1, 2, 3, 4, 5, 6, 7, 8, ...)"
+    )
+    assert len(json.loads(run("validate", path, "--json")[1])["warnings"]) == 12
+    assert run("validate", path)[1].count("beam-long") == 1
 
 
 @pytest.mark.usefixtures("solved")
@@ -329,6 +338,47 @@ def test_validate_counts_a_file_that_is_no_grid_among_its_errors(run, tmp_path):
     assert "actuators has 1 ratios for 12 beams" in error["message"]
 
 
+@pytest.mark.parametrize("command", ["validate", "simulate"])
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"[[[0, 0, 0], [2, 0, 0]], [[2, 0, 0], [2, 2, 0]]]", "lists of lines and graphs"),
+        (b"0\nSECTION\n2\nHEADER\n", "grids of drawings"),
+        (b"3D Geometry File Format \xff", "grids of drawings"),
+        (json.dumps(SADDLE | {"joints": [[0, 0, 1]] * 9}).encode(), "in any plane"),
+    ],
+)
+def test_a_drawing_is_no_grid_but_can_be_imported(run, solved, tmp_path, command, content, words):
+    path = tmp_path / "drawing.txt"
+    path.write_bytes(content)
+    line = refused(run(command, path))
+    assert "`simulearn import` makes" in line
+    assert words in line
+    assert not solved
+
+
+@pytest.mark.parametrize("factor", [0.001, 10])
+def test_a_grid_of_another_unit_is_one_line_before_anything_is_computed(
+    run, solved, tmp_path, factor
+):
+    path, task = tmp_path / "grid.json", tmp_path / "task.json"
+    data = SADDLE | {"joints": [[factor * x, factor * y] for x, y in SADDLE["joints"]]}
+    path.write_text(json.dumps(data))
+    goal = {"vertex": ["joint", 8, "centre"], "target": [45.0, 45.0, 6.0]}
+    task.write_text(json.dumps({"schema": "simulearn.task/1", "grid": data, "goals": [goal]}))
+    for words in (
+        ["simulate", path],
+        ["simulate", path, "--engine", "beams"],
+        ["rank", path, "--engine", "beams"],
+        ["optimize", task, "--engine", "beams", "-o", tmp_path / "found"],
+        ["gcode", path, "--printer", "ender-3", "-o", tmp_path / "a.gcode"],
+    ):
+        line = refused(run(*words))
+        assert "lengths are in mm" in line
+        assert "multiply all coordinates by" in line
+    assert not solved
+
+
 # library
 
 
@@ -393,7 +443,7 @@ WRONG = {
     "other schema": (changed(schema="simulearn.grid/9"), "schema is"),
     "unknown key": (changed(colour="red"), '"colour" is not a key'),
     "lengths": (changed(actuators=[0.5, 0.5]), "actuators has 2 ratios for 12 beams"),
-    "three coordinates": (changed(joints=[[0, 0, 0]] * 9), "joints[0] is"),
+    "three coordinates": (changed(joints=[[0, 0, 5]] * 9), "joints[0] is"),
     "NaN": (changed(joints=[[float("nan"), 0], *SADDLE["joints"][1:]]), "NaN"),
     "index": (changed(beams=[[0, 99], *SADDLE["beams"][1:]]), "beams[0] is [0, 99]"),
     "ratio": (changed(actuators=[1.3] + [0] * 11), "actuators[0] is 1.3"),
@@ -434,14 +484,14 @@ def test_a_missing_file_is_refused(run, tmp_path):
 
 def test_a_binary_file_is_refused(run, tmp_path):
     path = tmp_path / "grid.json"
-    path.write_bytes(b"\xff\xfe\x00\x01")
-    assert "is not UTF-8 text" in refused(run("simulate", path))
+    path.write_bytes(b"\xff\xfd\x00\x01")
+    assert "is not a grid file, which is text" in refused(run("simulate", path))
 
 
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("out.xyz", "is not one of .json .npz .png .pdf .svg .gif .glb .stl .vtu .pvd"),
+        ("out.xyz", "is not one of .json .npz .csv .png .pdf .svg .gif .html "),
         ("out", "is not one of"),
         ("none/out.json", "the folder none does not exist"),
         ("folder.png", "is a folder"),
@@ -524,7 +574,7 @@ def test_an_interrupt_that_a_callback_swallows_comes_again(run, monkeypatch):
 @pytest.mark.usefixtures("solved")
 def test_a_terminal_gets_a_bar_over_the_frames(run, monkeypatch):
     terminal = Console(stderr=True, force_terminal=True, force_interactive=True)
-    monkeypatch.setattr(cli.progress, "err", terminal)
+    monkeypatch.setattr("simulearn.cli.progress.err", terminal)
     code, _, err = run("simulate", "saddle")
     assert code == 0
     assert "12/12" in err
@@ -554,6 +604,68 @@ def test_version_and_help(run):
     code, out, err = run("--help")
     assert (code, err) == (0, "")
     assert all(command in out for command in ("simulate", "validate", "library"))
+
+
+# Outputs and surroundings that are not as usual
+
+
+def test_an_interrupt_while_modules_are_imported_is_one_line(run, monkeypatch):
+    def interrupted(name, *args, **kwargs):
+        if name == "simulearn.cli.program":
+            raise KeyboardInterrupt
+        return original(name, *args, **kwargs)
+
+    original = __import__
+    monkeypatch.setattr("builtins.__import__", interrupted)
+    assert run("validate", "saddle") == (130, "", "simulearn: interrupted\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
+@pytest.mark.parametrize("words", [["library", "saddle"], ["validate", "saddle"], ["library"]])
+def test_an_output_without_room_is_told(words):
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "simulearn.cli", *words],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=60,
+        )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr == ("simulearn: the output cannot be written (No space left on device)\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pipes of POSIX")
+def test_a_reader_that_leaves_is_no_error_to_talk_about():
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "simulearn.cli", "library", "--json"],
+        stdout=writing, stderr=subprocess.PIPE, text=True, check=False, timeout=60,
+    )  # fmt: skip
+    os.close(writing)
+    assert done.stderr == ""
+    assert done.returncode == 1
+
+
+def test_a_terminal_without_unicode_is_written_to(monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["simulearn", "validate", "grün.json"])
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    monkeypatch.setattr(sys, "stderr", stream)
+    with pytest.raises(SystemExit) as stop:
+        cli.main()
+    stream.flush()
+    assert stop.value.code == 1
+    assert b"gr?n.json: there is no such file" in stream.buffer.getvalue()
+
+
+def test_what_libraries_say_of_their_own_caches_is_not_shown(run):
+    warnings.simplefilter("always")
+    run("library")
+    with warnings.catch_warnings(record=True) as shown:
+        for doing in ("reading", "writing"):
+            text = f"Error {doing} persistent compilation cache entry for 'jit_f': OSError: no"
+            warnings.warn(text, stacklevel=1)
+        warnings.warn("something else", stacklevel=1)
+    assert [str(one.message) for one in shown] == ["something else"]
+    assert logging.getLogger("matplotlib").level == logging.ERROR
 
 
 # As its own process
@@ -589,3 +701,14 @@ def test_a_saddle_by_finite_elements(tmp_path):
     # The saddle is symmetric under half a turn about its middle.
     last = result.centres[-1]
     np.testing.assert_allclose(last[::-1] * [-1, -1, 1], last, atol=1e-6)
+
+
+@pytest.mark.parametrize("width", ["80", "40"])
+def test_figures_of_a_set_are_whole_on_a_narrow_terminal(run, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", width)
+    code, out, _ = run("dataset", "info", Path(__file__).parent / "data" / "sample.h5")
+    assert code == 0
+    assert "…" not in out
+    table = out[out.index("mean") :].splitlines()
+    assert max(len(line.rstrip()) for line in table) <= 80
+    assert "the paper's dimension: mean 94.44, 3 % 65.64, 96 % 124.39 mm" in out

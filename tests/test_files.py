@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from simulearn.errors import InputError
-from simulearn.files import read_text, replacing
+from simulearn.files import cache_folder, data_folder, decoded, parse_json, read_text, replacing
 
 posix = pytest.mark.skipif(os.name != "posix", reason="modes and links of POSIX")
 user = pytest.mark.skipif(
@@ -176,6 +176,29 @@ def test_what_cannot_be_read_is_named(tmp_path, name, words):
 
 
 def test_what_is_not_text_is_named(tmp_path):
-    (tmp_path / "a").write_bytes(b"\xff\xfe")
+    (tmp_path / "a").write_bytes(b"\xff\xfd")
     with pytest.raises(InputError, match="is not UTF-8 text"):
         read_text(tmp_path / "a")
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-32"])
+def test_a_byte_order_mark_says_the_encoding_and_is_no_text(tmp_path, encoding):
+    (tmp_path / "a").write_bytes('a = "é"\r\nb\r'.encode(encoding))
+    assert read_text(tmp_path / "a") == 'a = "é"\nb\n'
+
+
+def test_a_mark_that_came_with_the_text_is_no_json():
+    assert parse_json("\ufeff[1]") == [1]
+    assert decoded(b"\xff\xfe") == ""
+
+
+def test_a_user_without_a_home_has_no_folders(monkeypatch):
+    import platformdirs
+
+    def nowhere(*_args, **_more):
+        raise RuntimeError("could not determine the home directory")
+
+    for name in ("user_cache_dir", "user_data_dir"):
+        monkeypatch.setattr(platformdirs, name, nowhere)
+    assert cache_folder() is None
+    assert data_folder() is None

@@ -82,3 +82,36 @@ def test_without_a_folder_for_the_cache_kernels_work(tmp_path):
     blocked = tmp_path / "blocked"
     blocked.write_text("a file where a folder should be", "utf-8")
     assert ended(begun(folder_of(tmp_path, 2.0), blocked)) == ["42.0", "1", "unset"]
+
+
+@linux
+@pytest.mark.parametrize("ending", [".nbi", ".nbc"])
+def test_a_torn_kernel_is_compiled_anew_and_kept(tmp_path, ending):
+    folder, cache = folder_of(tmp_path, 2.0), tmp_path / "cache"
+    cache.mkdir()
+    assert ended(begun(folder, cache)) == ["42.0", "1", "unset"]
+    for file in cache.rglob(f"*{ending}"):
+        file.write_bytes(file.read_bytes()[:100])
+    assert ended(begun(folder, cache)) == ["42.0", "1", "unset"]
+    assert ended(begun(folder, cache)) == ["42.0", "0", "unset"]
+
+
+def test_a_disk_without_room_keeps_no_kernel(tmp_path, monkeypatch):
+    import errno
+
+    from numba.core.caching import IndexDataCacheFile
+
+    from simulearn import native
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(native, "_folder", lambda source: tmp_path)
+    monkeypatch.setattr(IndexDataCacheFile, "save", full)
+
+    @native.native()
+    def twice(x):
+        return 2 * x
+
+    assert twice(21.0) == 42.0
+    assert not list(tmp_path.rglob("*.nb?"))

@@ -4,6 +4,7 @@ A file is written beside its final place under a temporary name and then renamed
 operating system does in one step: a reader of the final name gets the old file or the new one.
 """
 
+import codecs
 import errno
 import io
 import json
@@ -11,7 +12,7 @@ import os
 import re
 import secrets
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,13 @@ from simulearn.errors import InputError
 # A file of more bytes is not read unless its reader allows it.
 MOST_BYTES = 2**30
 MOST_TRIES = 100
+MARKS = {  # the byte order mark with which a text begins, and its encoding; the longer ones first
+    codecs.BOM_UTF32_LE: "utf-32",
+    codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF8: "utf-8-sig",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+}
 # The numbers of errors of a disk or folder that takes no more.
 NO_ROOM = {errno.ENOSPC, errno.EFBIG, errno.EROFS, errno.EIO, getattr(errno, "EDQUOT", errno.EIO)}
 
@@ -32,7 +40,19 @@ def cache_folder() -> Path | None:
 
     None where there is no such folder, as for a user without a home.
     """
-    path = Path(platformdirs.user_cache_dir("simulearn", appauthor=False))
+    return _own_folder(platformdirs.user_cache_dir)
+
+
+def data_folder() -> Path | None:
+    """Return the folder for what this user makes; None where there is none, as without a home."""
+    return _own_folder(platformdirs.user_data_dir)
+
+
+def _own_folder(of_platform: Callable[..., str]) -> Path | None:
+    try:
+        path = Path(of_platform("simulearn", appauthor=False))
+    except (RuntimeError, OSError, KeyError):  # no home can be found
+        return None
     return path if path.is_absolute() else None
 
 
@@ -136,13 +156,23 @@ def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
             data = file.read(most + 1)
         if len(data) > most:
             raise InputError(f"{path}: is too large; at most {most / 2**20:g} MiB can be read")
-        return io.TextIOWrapper(io.BytesIO(data), encoding="utf-8").read()
+        return decoded(data)
     except FileNotFoundError as error:
         raise InputError(f"{path}: there is no such file") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: is not UTF-8 text") from error
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+
+
+def decoded(data: bytes) -> str:
+    """Return bytes as text: UTF-8, or what a byte order mark says; lines end in a newline only.
+
+    Raises:
+        UnicodeDecodeError: they are no such text.
+    """
+    encoding = next((name for mark, name in MARKS.items() if data.startswith(mark)), "utf-8")
+    return io.TextIOWrapper(io.BytesIO(data), encoding=encoding).read()
 
 
 def parse_json(text: str) -> Any:
@@ -152,6 +182,7 @@ def parse_json(text: str) -> Any:
         InputError: the text is not JSON; `where` is the place.
     """
     try:
+        text = text.removeprefix("\ufeff")  # a byte order mark that came with the text
         return json.loads(text, parse_constant=_no_constant, object_pairs_hook=_no_twins)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"

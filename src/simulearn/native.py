@@ -8,7 +8,7 @@ of the compiler, names the folder in which they are kept. Nothing of the host pr
 import hashlib
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ import llvmlite
 import numba
 import numpy as np
 from numba.core import event
+from numba.core.caching import FunctionCache
 
 from simulearn.files import cache_folder
 
@@ -44,7 +45,7 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
                 before = _settings.CACHE_DIR
                 _settings.CACHE_DIR = str(folder)
                 try:
-                    compile_.enable_caching()
+                    compile_._cache = _Kernels(function)
                 except (RuntimeError, OSError):
                     pass  # the folder cannot be written: every process compiles for itself
                 finally:
@@ -52,6 +53,26 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
         return compile_
 
     return decorate
+
+
+class _Kernels(FunctionCache):
+    """The kernels of a function on disk; what cannot be read or written is done without."""
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return a kernel, None where there is none or its file is torn."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # whatever the bytes of a torn file make of the unpickling
+            with suppress(OSError):
+                self.flush()  # so that the next run finds what this one compiles
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a kernel, where there is room."""
+        try:
+            super().save_overload(sig, data)
+        except OSError:
+            self.disable()
 
 
 @contextmanager

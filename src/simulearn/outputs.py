@@ -29,6 +29,12 @@ def _animation(result: Result, path: Path, cancel: Cancel | None = None) -> None
     animate(result, path, cancel=cancel)
 
 
+def _page(result: Result, path: Path) -> None:
+    from simulearn.interop import write_html
+
+    write_html(result, path)
+
+
 def _surface(result: Result, path: Path) -> None:
     from simulearn.interop import write_surface
 
@@ -73,6 +79,7 @@ WRITERS: dict[str, Writer] = {
     ".pdf": _figure,
     ".svg": _figure,
     ".gif": _animation,
+    ".html": _page,
     ".mp4": _animation,
     ".webm": _animation,
     ".glb": _surface,
@@ -85,6 +92,7 @@ WRITERS: dict[str, Writer] = {
     ".pvd": _pvd,
 }
 NEEDS = {  # ending -> package, extra
+    ".html": ("nicegui", "studio"),
     ".3dm": ("rhino3dm", "rhino"),
     ".vtu": ("meshio", "vtk"),
     ".pvd": ("meshio", "vtk"),

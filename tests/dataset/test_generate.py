@@ -1,18 +1,23 @@
 """Generating as a user does it: killed, interrupted, out of disk, on a cluster; nothing is lost."""
 
+import io
 import json
 import os
 import random
 import signal
+import subprocess
 import sys
 import time
+from concurrent.futures import Future
+from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import psutil
 import pytest
 from running import command
 
-from simulearn.dataset import Config, cluster_workers, generate, local_workers, pack
+from simulearn.dataset import Config, cluster_workers, generate, local_workers, pack, workers
 from simulearn.dataset.generate import Folder
 from simulearn.dataset.trial import TrialJob, TrialOutcome, read_trial, run
 from simulearn.errors import ComputationError, InputError
@@ -166,6 +171,185 @@ def test_a_cluster_of_which_a_worker_is_killed_makes_the_same_files(folder, smal
 def test_no_scheduler_is_told_in_a_line(small, tmp_path):
     with pytest.raises(InputError, match="no Dask scheduler answers there"):
         generate(small, tmp_path / "set", cluster_workers("tcp://127.0.0.1:9"))
+
+
+@pytest.mark.parametrize(
+    "address", ["", "foo", "tcp://", "127.0.0.1", "tcp://127.0.0.1:port", "tcp://nohost.invalid:1"]
+)
+def test_an_address_that_is_none_is_told_in_a_line(address):
+    with (
+        pytest.raises(InputError, match="an address is as tcp://host:8786"),
+        cluster_workers(address),
+    ):
+        pass
+
+
+class Client:
+    """Stands in for that of a scheduler."""
+
+    status = "running"
+
+    def __init__(self, *_args, **_more):
+        self.threads = {"a": 1}
+        self.versions = {"a": workers._version()()}
+
+    def get_executor(self, pure):
+        return self
+
+    def nthreads(self):
+        return self.threads
+
+    def run(self, version, on_error):
+        return self.versions
+
+    def close(self, timeout):
+        pass
+
+
+@pytest.fixture
+def client(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    client = Client()
+    monkeypatch.setattr(distributed, "Client", lambda *_, **__: client)
+    monkeypatch.setattr(workers, "_knock", lambda address: None)
+    return client
+
+
+def told(waiting=0.0):
+    with pytest.raises(ComputationError) as error, cluster_workers("tcp://here:1", waiting) as team:
+        team.check()
+    return f"{error.value}; {error.value.hint}"
+
+
+def test_a_scheduler_without_workers_is_not_waited_for_without_end(client):
+    client.threads = {}
+    assert "has had no workers for 0 s; start some: dask worker tcp://here:1" in told()
+
+
+def test_workers_that_leave_are_not_waited_for_without_end(client):
+    with cluster_workers("tcp://here:1", 0.0) as team:
+        assert team.count() == 1
+        client.threads = {}
+        with pytest.raises(ComputationError, match="has had no workers"):
+            team.check()
+
+
+@pytest.mark.parametrize(
+    ("version", "words"),
+    [
+        ("0.0.9, solver 1", "0.0.9, solver 1; this machine has"),
+        (ModuleNotFoundError("no"), "no SimuLearn"),
+    ],
+)
+def test_workers_of_another_version_are_told(client, version, words):
+    client.versions["b"] = version
+    assert "the worker b has " in (line := told())
+    assert words in line
+
+
+def test_a_scheduler_that_dies_is_told(client, small, tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "run", None)
+
+    def submit(*_):
+        client.status = "closed"
+        future = Future()
+        future.cancel()
+        return future
+
+    client.submit = submit
+    with pytest.raises(ComputationError, match="answers no more") as error:
+        generate(small, tmp_path / "set", cluster_workers("tcp://here:1"))
+    assert "the same command goes on" in error.value.hint
+
+
+@pytest.mark.parametrize("words", [[], ["-"]])
+def test_a_script_without_a_guard_generates(tmp_path, small_file, words):
+    script = tmp_path / "script.py"
+    lines = (
+        "from simulearn.dataset import generate, local_workers, read_config",
+        f"config = read_config({str(small_file)!r}).model_copy(update={{'trials': 1}})",
+        "print('begun')",
+        "print(generate(config, 'set', local_workers(1)).done)",
+    )
+    script.write_text("\n".join(lines), "utf-8")
+    done = subprocess.run(
+        [sys.executable, *(words or [str(script)])],
+        input=script.read_text("utf-8") if words else "",
+        capture_output=True, text=True, cwd=tmp_path, timeout=120, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (0, "begun\n1\n", "")
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), OSError("odd")])
+def test_processes_that_cannot_be_started_are_told(monkeypatch, error):
+    import pebble
+
+    def refuse(*_args, **_more):
+        raise error
+
+    monkeypatch.setattr(pebble, "ProcessPool", refuse)
+    with pytest.raises(ComputationError, match="worker processes cannot be started"):
+        local_workers(2).__enter__()
+
+
+def test_the_command_uses_the_processors_that_it_may(run, monkeypatch, tmp_path, small_file):
+    asked = []
+
+    def team(count):
+        asked.append(count)
+        raise ComputationError("enough")
+
+    monkeypatch.setattr("simulearn.cli.dataset.cores", lambda: 1)
+    monkeypatch.setattr("simulearn.dataset.local_workers", team)
+    run("dataset", "generate", small_file, "-o", tmp_path / "set")
+    assert asked == [1]
+
+
+def answering(job):
+    """Return what a worker would, without computing."""
+    buffer = io.BytesIO()
+    numbers = {name: np.float64(0) for name in ("joints", "beams", "stress", "seconds")}
+    np.savez(buffer, grid=json.dumps(job.grid), record="{}", **numbers)
+    future = Future()
+    future.set_result(TrialOutcome("done", buffer.getvalue()))
+    return future
+
+
+@contextmanager
+def team():
+    yield workers.Workers(answering, lambda: 1)
+
+
+@pytest.mark.parametrize("cut", [0, 100, -1])
+def test_a_torn_trial_is_made_anew_and_told(small, tmp_path, cut):
+    generate(small, tmp_path / "set", team())
+    path = min((tmp_path / "set" / "trials").glob("*.npz"))
+    whole = path.read_bytes()
+    path.write_bytes(whole[:cut])
+    with pytest.raises(InputError, match="1 of 12 trials are not there yet, or are torn"):
+        pack(tmp_path / "set", tmp_path / "set.h5")
+    tally = generate(small, tmp_path / "set", team())
+    assert (tally.present, tally.done, tally.torn) == (11, 1, 1)
+    assert path.read_bytes() == whole
+
+
+@pytest.mark.parametrize("content", ["", "{", "[1]", "{}", "null"])
+def test_an_odd_file_among_the_failures_is_made_anew_and_told(small, tmp_path, content):
+    folder = Folder(tmp_path / "set", small)
+    key = TrialJob.of(small.design(3)[0], small).key
+    folder.failure(key).write_text(content, "utf-8")
+    (tmp_path / "set" / "failures" / "notes.json").write_text(content, "utf-8")
+    folder.forget_failures()
+    tally = generate(small, tmp_path / "set", team())
+    assert (tally.done, tally.torn) == (12, 1)
+    assert (tmp_path / "set" / "failures" / "notes.json").exists()
+
+
+def test_a_torn_description_says_how_to_go_on(small, tmp_path):
+    generate(small, tmp_path / "set", team())
+    (tmp_path / "set" / "config.json").write_text("", "utf-8")
+    with pytest.raises(InputError, match=r"config\.json: is damaged .*; delete it"):
+        generate(small, tmp_path / "set", team())
 
 
 def test_the_key_depends_on_all_that_the_answer_depends_on(small: Config):

@@ -90,10 +90,18 @@ def test_an_unfinished_run_is_packed_only_if_asked(folder, small, tmp_path):
     more = Folder(tmp_path / "set", small.model_copy(update={"trials": 14}))
     for trial in (folder / "trials").iterdir():
         (more.path / "trials" / trial.name).write_bytes(trial.read_bytes())
-    with pytest.raises(InputError, match="2 of 14 trials are not there yet"):
+    with pytest.raises(InputError, match="2 of 14 trials are not there yet, or are torn"):
         pack(more.path, tmp_path / "x.h5")
     assert not (tmp_path / "x.h5").exists()
     assert pack(more.path, tmp_path / "x.h5", partial=True) == 12
+
+
+def test_a_locked_file_is_told(file):
+    fcntl = pytest.importorskip("fcntl")
+    with file.open("rb+") as stream:
+        fcntl.flock(stream, fcntl.LOCK_EX)
+        with pytest.raises(InputError, match=r"is locked .* HDF5_USE_FILE_LOCKING"):
+            read_dataset(file)
 
 
 def test_what_is_no_set_is_refused(file, folder, tmp_path):
@@ -126,7 +134,7 @@ def test_a_damaged_trial_is_named(folder, small, tmp_path):
     copy = Folder(tmp_path / "set", small)
     for trial in (folder / "trials").iterdir():
         (copy.path / "trials" / trial.name).write_bytes(trial.read_bytes()[:5000])
-    with pytest.raises(InputError, match="is not a trial; delete it and generate the set again"):
+    with pytest.raises(InputError, match="12 of 12 trials are not there yet, or are torn"):
         pack(copy.path, tmp_path / "x.h5")
 
 

@@ -215,7 +215,7 @@ def test_a_grid_beyond_the_limit_is_refused_in_one_line():
 
 def test_of_countless_errors_of_one_kind_a_thousand_are_named():
     grid = ladder(200, 1.0)
-    heap = moved(grid, joints=grid.joints * 1e-6)
+    heap = moved(grid, joints=grid.joints * [1e-6, 60.0])
     assert sum(e.code == "joints-coincide" for e in validate(heap, MATERIAL).errors) == 1000
-    crowd = moved(grid, joints=grid.joints * 0.05)
+    crowd = moved(grid, joints=grid.joints * [0.05, 60.0])
     assert sum(e.code == "overlap" for e in validate(crowd, MATERIAL).errors) == 1000

@@ -117,7 +117,7 @@ def test_an_error_has_its_code_and_place():
         ("actuators", [0] * 7 + [1.3] + [0] * 4, "actuators[7] is 1.3; a ratio lies in [-1, 1]"),
         ("actuators", [0] * 7 + [True] + [0] * 4, "actuators[7] is true; actuators are a list"),
         ("fixed", 9, "fixed is 9; joints are numbered 0 to 8"),
-        ("fixed", 4.0, "fixed is 4.0; the fixed joint is an index counted from 0"),
+        ("fixed", 4.5, "fixed is 4.5; the fixed joint is an index counted from 0"),
         ("material", 3, "material is 3; a material is the name of"),
         ("material", "a\nb", 'material is "a\\nb"; a material is the name of'),
         ("colour", "red", '"colour" is not a key of a grid; its keys are schema, joints'),
@@ -127,10 +127,46 @@ def test_a_wrong_value_is_named_with_its_place(key, value, line):
     assert refused({**GOOD, key: value}).startswith(line)
 
 
-def test_a_point_in_space_is_refused_with_what_to_do():
+def test_a_point_above_the_plane_is_refused_with_what_to_do():
     assert refused({**GOOD, "joints": [[0, 0], [1, 0, 2.5]]}) == (
-        "joints[1] is [1, 0, 2.5]; joints are a list of [x, y], finite numbers in mm; drop z"
+        "joints[1] is [1.0, 0.0, 2.5]; joints are a list of [x, y], finite numbers in mm; "
+        "z is not 0: a grid is drawn flat, in the plane z = 0"
     )
+
+
+def test_a_z_of_0_is_read_as_if_it_were_not_there():
+    joints = [[*GOOD["joints"][0], 1e-17], *([x, y, 0] for x, y in GOOD["joints"][1:-1])]
+    data = {**GOOD, "joints": [*joints, GOOD["joints"][-1]]}
+    assert grid_to_dict(grid_from_dict(data)) == GOOD
+
+
+def test_indices_with_a_point_are_read():
+    beams = [[float(i), j] for i, j in GOOD["beams"]]
+    assert grid_to_dict(grid_from_dict({**GOOD, "beams": beams, "fixed": 4.0})) == GOOD
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-be", "utf-32"])
+def test_a_byte_order_mark_and_other_line_ends_are_read_over(tmp_path, encoding):
+    text = "\ufeff" * (encoding == "utf-16-be") + json.dumps(GOOD, indent=1)
+    (tmp_path / "grid.json").write_bytes(text.replace("\n", "\r\n").encode(encoding))
+    assert grid_to_dict(read_grid(tmp_path / "grid.json")) == GOOD
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"[[[0, 0, 0], [2, 0, 0]], [[2, 0, 0], [2, 2, 0]]]",
+        b'{"data": {"node": {"0": {"x": 0}}, "edge": {}}}',
+        b"0\r\nSECTION\r\n2\r\nHEADER\r\n",
+        b"<svg/>",
+        b"3D Geometry File Format \xfe\xfa\x00",
+    ],
+)
+def test_what_is_a_drawing_and_no_grid_has_a_code_of_its_own(tmp_path, content):
+    (tmp_path / "grid.json").write_bytes(content)
+    with pytest.raises(InputError, match=r"grid\.json: is ") as error:
+        read_grid(tmp_path / "grid.json")
+    assert error.value.code == "not-a-grid"
 
 
 @pytest.mark.parametrize("key", ["schema", "joints", "beams", "actuators", "fixed"])

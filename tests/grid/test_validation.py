@@ -1,5 +1,7 @@
 """Validation: each rule breaks for one grid made to break it, and says by how much."""
 
+import re
+
 import numpy as np
 import pytest
 from grids import MATERIAL, SECTION, drawn, moved, star
@@ -10,6 +12,7 @@ from simulearn.grid import (
     Grid,
     Rules,
     TrainingRange,
+    check_designs,
     clean,
     draw,
     drop_beams,
@@ -240,11 +243,12 @@ def test_beams_that_cross():
     square = lattice((1, 1))
     beams = [*square.beams.tolist(), [0, 3], [1, 2]]
     crossed = Grid(square.joints, beams, np.zeros(6), 0)
-    assert (
-        "overlap",
+    assert only(errors(crossed)) == (
+        "joint-missing",
         "beam 5",
-        "beam 4 and beam 5 overlap; parts of a grid meet only end to end",
-    ) in (errors(crossed))
+        "beam 4 and beam 5 cross at (32.5, 32.5) mm, where a joint is missing: "
+        "add one and end both beams there",
+    )
 
 
 def test_a_joint_on_a_beam():
@@ -259,6 +263,94 @@ def test_a_joint_on_a_beam():
         "joint 4 and beam 0 overlap; parts of a grid meet only end to end",
     )
     assert not errors(place(grid, 4, 40, 10))
+
+
+@pytest.mark.parametrize("y", [0.0, 2.0, -2.0])
+def test_beams_that_meet_in_a_t_without_a_joint(y):
+    square = lattice((1, 1))
+    joints = np.r_[square.joints, [[30, y], [30, 65 - y]]]
+    grid = Grid(joints, [*square.beams.tolist(), [4, 5]], np.zeros(5), 0)
+    first, second, third = errors(grid)
+    assert first == (
+        "joint-missing",
+        "beam 0",
+        f"joint 4 lies on beam 0 at (30, {y:g}) mm, which does not end there, so a joint is "
+        "missing: divide the beam in two that end there",
+    )
+    assert (second[0], third[0]) == ("joint-missing", "disconnected")
+    # A beam that only dangles for want of a joint keeps no grid from being simulated.
+    hung = Grid(joints[:5], [*square.beams.tolist(), [4, 3]], np.zeros(5), 0)
+    assert not errors(hung)
+    assert [w[0] for w in warnings(hung)] == ["joint-missing", "dangling-beam"]
+
+
+def test_beams_through_a_row_of_joints_lack_each_of_them():
+    row = lattice((3, 1))
+    beams = [(0, 4), (3, 7), (0, 3), (4, 7)]
+    long = Grid(row.joints[:8], [*beams, (1, 5), (2, 6)], np.zeros(6), 0)
+    where = [e for e in errors(long) if e[0] == "joint-missing"]
+    assert len(where) == 4
+    assert {e[1] for e in where} == {"beam 2", "beam 3"}
+
+
+# Sizes
+
+
+@pytest.mark.parametrize(
+    ("scale", "words"),
+    [
+        (1e-3, "0.13 by 0.13 mm wide, .* read as metres, .* multiply all coordinates by 1000"),
+        (1 / 25.4, r"5.12 by 5.12 mm wide, .* 2.56 mm long, .* inches, .* by 25\.4"),
+        (0.1, "13 by 13 mm wide, .* not as long as it is wide .* centimetres"),
+        (10.0, "1,300 by 1,300 mm wide, .* their own weight .* tenths of a millimetre"),
+        (500.0, "65,000 by 65,000 mm wide, .* micrometres, .* by 0.001"),
+    ],
+)
+def test_a_size_that_no_print_has_is_one_message_with_the_likely_unit(scale, words):
+    grid = make("cone")
+    scaled = moved(grid, joints=grid.joints * scale)
+    code, where, message = only(errors(scaled))
+    assert (code, where) == ("size", "grid")
+    assert re.search(words, message), message
+    assert not warnings(scaled)
+    few = np.repeat(scaled.joints[None], 2, axis=0)
+    ratios = np.repeat(grid.actuators[None], 2, axis=0)
+    assert not check_designs(grid.beams, grid.fixed, few, ratios, MATERIAL).valid.any()
+
+
+def test_far_away_joints_name_the_likely_unit():
+    grid = make("cone")
+    assert "micrometres" in errors(moved(grid, joints=grid.joints * 1600.0))[0][2]
+
+
+@pytest.mark.parametrize("length", [12.0, 250.0])
+def test_an_unusual_size_is_one_warning(length):
+    grid = lattice((2, 2), length)
+    assert not errors(grid)
+    assert only(warnings(grid))[0] == "size"
+
+
+def test_long_beams_and_slender_strips_are_no_matter_of_size():
+    assert not errors(lattice((2, 2), 145.0))
+    assert not errors(lattice((4, 1), 100.0))
+    assert not errors(lattice((8, 1), 300.0))
+    light = MATERIAL.gravity.model_copy(update={"acceleration": 0.0})
+    weightless = MATERIAL.model_copy(update={"gravity": light})
+    assert validate(lattice((2, 2), 650.0), weightless).valid
+
+
+# Indices that count from 1
+
+
+def test_indices_from_1_that_happen_to_exist_are_found_out():
+    grid = lattice((2, 2))
+    joints = np.r_[grid.joints, [[195.0, 195.0]]]
+    shifted = Grid(joints, grid.beams + 1, grid.actuators, grid.fixed + 1)
+    assert errors(shifted)[0][:2] == ("counted-from-one", "grid")
+    assert "counted-from-one" not in [e[0] for e in errors(grid)]
+    # Where joint 0 is unused and all else is well, nothing is to be said of the indices.
+    spare = Grid(np.r_[[[-99.0, 0.0]], grid.joints], grid.beams + 1, grid.actuators, grid.fixed + 1)
+    assert [w[0] for w in warnings(spare)] == ["unused-joint"]
 
 
 # Dangling beams

@@ -2,6 +2,7 @@
 
 import dataclasses
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -272,7 +273,37 @@ def test_targets_out_of_reach_are_named(task, engines, scale, code):
     goals = task.aims
     messages = out_of_reach(task.start, dataclasses.replace(goals, targets=scale * goals.targets))
     assert {message.code for message in messages} == ({code} if code else set())
-    assert optimize(task).warnings == tuple(out_of_reach(task.start, goals))
+    told = optimize(task).warnings
+    assert told[:-1] == tuple(out_of_reach(task.start, goals))
+    assert told[-1].code == "nothing-near"
+
+
+@pytest.mark.parametrize(
+    ("scale", "words"),
+    [
+        (0.7, None),
+        (1e-3, "they are probably in another unit"),
+        (10.0, "they lie farther away than the beams reach"),
+    ],
+)
+def test_it_is_told_that_nothing_comes_near_and_why(task, engines, scale, words):
+    goals = [
+        goal.model_copy(update={"target": [scale * x for x in goal.target]}) for goal in task.goals
+    ]
+    found = optimize(task.model_copy(update={"goals": goals}))
+    told = [message.message for message in found.warnings if message.code == "nothing-near"]
+    assert len(told) == (words is not None)
+    if words:
+        assert words in told[0]
+        assert f"({found.error_mm:.0f} mm are left)" in told[0]
+    if scale < 0.1:
+        assert "if they are in metres, multiply them by 1000" in found.warnings[0].message
+
+
+def test_getting_ready_counts_but_leaves_half_of_the_time(task, engines, monkeypatch):
+    monkeypatch.setattr(search, "warm", lambda engine: time.sleep(0.3))
+    assert optimize(limited(task, seconds=20.0)).seconds > 0.3
+    assert optimize(limited(task, seconds=0.2)).steps[0].seconds == pytest.approx(0.1, abs=0.05)
 
 
 def test_what_is_not_known_is_named(task):

@@ -38,6 +38,23 @@ def test_the_form_of_the_design_document_is_read(small):
     assert task_from_dict(data).free.joints == [1, 2]
 
 
+def test_center_and_numbers_with_a_point_are_read(small):
+    vertices = [["joint", 1.0, "center"], ["beam", 0, "end", "center"]]
+    goals = [{"vertex": vertex, "target": [1, 2, 3]} for vertex in vertices]
+    task = task_from_dict({**small, "goals": goals, "free": {"joints": [1.0]}})
+    assert [goal.vertex for goal in task.goals] == [
+        ["joint", 1, "centre"],
+        ["beam", 0, "end", "centre"],
+    ]
+    assert task.free.joints == [1]
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_is_read_over(small, tmp_path, encoding):
+    (tmp_path / "task.json").write_bytes(json.dumps(small).encode(encoding))
+    assert task_to_dict(read_task(tmp_path / "task.json")) == task_to_dict(task_from_dict(small))
+
+
 def test_a_task_is_kept(small, tmp_path):
     task = task_from_dict(small)
     write_task(task, tmp_path / "task.json")

@@ -95,6 +95,39 @@ def test_damaged_or_missing_weights_are_told(saved):
         _ = bundle_of(saved.path).model
 
 
+def test_a_git_lfs_pointer_is_told_as_one_also_by_validate(saved, run):
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:abab\nsize 1234567\n"
+    (saved.path / "weights.safetensors").write_text(pointer, "utf-8")
+    with pytest.raises(InputError, match=r"is a Git LFS pointer, .* `git lfs pull`"):
+        _ = bundle_of(saved.path).model
+    code, _, err = run("validate", "saddle", "--model", saved.path)
+    assert code == 1
+    assert "is a Git LFS pointer" in err
+
+
+def test_torn_weights_are_found_by_validate(saved, run):
+    assert run("validate", "saddle", "--model", saved.path)[0] == 0
+    file = saved.path / "weights.safetensors"
+    file.write_bytes(file.read_bytes()[:-100])
+    code, _, err = run("validate", "saddle", "--model", saved.path)
+    assert code == 1
+    assert "is damaged" in err
+
+
+@pytest.mark.parametrize(
+    ("version", "words"),
+    [
+        ("9.0.0", "the model is of SimuLearn 9.0.0, this is .*: update it to read newer models"),
+        ("0.0.1", "the model is of SimuLearn 0.0.1, this is .*: train the model again"),
+    ],
+)
+def test_the_card_of_another_version_says_so(saved, version, words):
+    for changes in ({"licence": "MIT"}, {"kind": "oracle"}, {"ranges": {}}):
+        edit(saved, version=version, **changes)
+        with pytest.raises(InputError, match=words):
+            bundle_of(saved.path)
+
+
 @pytest.mark.parametrize("change", ["shape", "missing", "more", "infinite"])
 def test_arrays_that_do_not_fit_are_named(saved, change):
     import hashlib

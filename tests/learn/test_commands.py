@@ -8,7 +8,7 @@ from PIL import Image
 from test_train import toml
 from typer.testing import CliRunner
 
-from simulearn.cli import app
+from simulearn.cli.program import app
 from simulearn.grid import make, write_grid
 from simulearn.learn.common.bundle import bundle_of, save_bundle
 from simulearn.material import load_material

@@ -110,3 +110,23 @@ def test_an_edited_file_is_another_material(tmp_path):
     path.write_text(text.replace("acceleration = 2182.0", "acceleration = 0.0"), "utf-8")
     assert load_material(path).gravity.acceleration == 0
     assert load_material(path).digest != before.digest
+
+
+def test_a_shipped_material_is_read_once(monkeypatch):
+    from simulearn.material import material
+
+    def counted(path):
+        paths.append(path)
+        return original(path)
+
+    paths, original = [], material.read_material
+    monkeypatch.setattr(material, "read_material", counted)
+    material._shipped.cache_clear()
+    assert all(load_material("pla-hot-water") is load_material("pla-hot-water") for _ in range(50))
+    assert len(paths) == 1
+
+
+@pytest.mark.parametrize("name", ["..", "", "a\0b", "x" * 300])
+def test_odd_names_are_not_known(name):
+    with pytest.raises(InputError, match="is not known"):
+        load_material(name)

@@ -1,29 +1,10 @@
 """What axe-core finds of barriers for people with disabilities: nothing, in every state."""
 
 import pytest
+from drawn import without_unit
 from playwright.sync_api import expect
 
 import gestures as do
-
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
-
-
-@pytest.fixture(scope="session")
-def axe():
-    """Return a function that lists what is wrong with a page as it is."""
-    script = pytest.importorskip("axe_playwright_python.sync_playwright").Axe().axe_script
-    every = {"type": "tag", "values": RULES}
-    colours = {"type": "rule", "values": ["color-contrast"]}  # the only difference in the dark
-
-    def wrong(page):
-        if not page.evaluate("() => 'axe' in window"):
-            page.evaluate(script)
-        dark = page.evaluate("() => document.documentElement.dataset.theme") == "dark"
-        options = {"runOnly": colours if dark else every, "resultTypes": ["violations"]}
-        found = page.evaluate("(options) => axe.run(options)", options)["violations"]
-        return [(one["id"], node["html"]) for one in found for node in one["nodes"]]
-
-    return wrong
 
 
 def looks(**more):
@@ -80,6 +61,22 @@ def test_dialogs_and_menus(page, studio, axe):
     page.keyboard.press("Escape")
     do.click(page, (32, 65), button="right")
     expect(page.get_by_role("menuitem", name="Delete")).to_be_visible()
+    assert axe(page) == []
+
+
+@pytest.mark.parametrize("page", looks(), indirect=True, ids=["light", "dark"])
+def test_drawings(page, studio, axe, forgiven):
+    forgiven.append("status of 422")
+    do.opened(page, studio.url)
+    do.open_file(page, "cell.svg", without_unit())
+    asked = page.get_by_role("dialog", name="How large is cell.svg?")
+    asked.get_by_role("radio", name="Another width").check()
+    assert axe(page) == []
+    do.button(asked, "Open at this size").click()
+    told = page.locator(".drawing-panel")
+    told.get_by_role("switch", name="1 gap closed").click()
+    expect(told.get_by_text("Not done")).to_be_visible()
+    do.button(told, "Ends past 1 joint cut").click()
     assert axe(page) == []
 
 

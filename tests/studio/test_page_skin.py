@@ -10,8 +10,8 @@ import pytest
 
 import synthetic
 from simulearn.grid import drop_beams, grid_to_dict
+from simulearn.interop import frames
 from simulearn.simulate import skin
-from simulearn.studio import frames
 
 SCRIPT = Path(__file__).parent / "page" / "skins.mjs"
 SPACING = 4.0  # mm

@@ -10,9 +10,9 @@ from asking import Client, awaited, problem, raw
 
 from simulearn.errors import CancelledError
 from simulearn.grid import Grid, grid_to_dict, lattice, make
+from simulearn.interop import frames
 from simulearn.inverse import rank, task_from_dict
 from simulearn.simulate import engine, outcome_to_dict
-from simulearn.studio import frames
 from simulearn.studio.routes import designs
 from simulearn.studio.settings import Settings
 
@@ -105,7 +105,7 @@ def test_a_design_that_fails_takes_no_other_with_it(client, saddle):
     results = client.post("/api/simulate", {"grids": entries}).json()["results"]
     codes = [one.get("code") for one in results]
     assert codes == [
-        None, "grid-file", "actuator-short", "grid-file", "grid-file", "too-large",
+        None, "not-a-grid", "actuator-short", "not-a-grid", "grid-file", "too-large",
         "material-unknown", "material-path", None,
     ]  # fmt: skip
     assert results[0]["joints"] == results[-1]["joints"]

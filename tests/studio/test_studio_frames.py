@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from simulearn.grid import Grid, make, validate
+from simulearn.interop import frames
 from simulearn.material import load_material
 from simulearn.simulate import engine, summary
-from simulearn.studio import frames
 
 CODE = 8  # bytes before the header
 

@@ -25,6 +25,9 @@ app = typer.Typer(
 out = Console(soft_wrap=True, highlight=False)  # a message is one line, whoever reads it
 err = Console(stderr=True, soft_wrap=True, highlight=False)
 
+ALIKE = 5  # so many messages of one kind are one line
+NAMED = 8  # places of them that are named
+
 GridArgument = Annotated[
     str, typer.Argument(metavar="GRID", help="A grid file (.json), or a name from the library.")
 ]
@@ -72,10 +75,31 @@ def validated(grid: Grid) -> Validation:
 
 
 def warn(messages: Iterable[Message], already: Iterable[Message] = ()) -> None:
-    """Print warnings, but for those that are printed already."""
+    """Print warnings, but for those that are printed already; many alike as one line."""
+    for message in grouped([message for message in messages if message not in already]):
+        err.print(f"[yellow]warning:[/] {escape(message.message)}")
+
+
+def grouped(messages: Iterable[Message]) -> list[Message]:
+    """Return messages with those of one code, where they are many, made into one.
+
+    The first of them stands for all, with the places of the others behind it.
+    """
+    alike: dict[tuple[str, str], list[Message]] = {}
     for message in messages:
-        if message not in already:
-            err.print(f"[yellow]warning:[/] {escape(message.message)}")
+        alike.setdefault((message.code, message.where.rpartition(" ")[0]), []).append(message)
+    lines: list[Message] = []
+    for (code, part), some in alike.items():
+        if len(some) < ALIKE:
+            lines += some
+            continue
+        first, *others = some
+        numbers = [one.where.rpartition(" ")[2] for one in others[:NAMED]]
+        places = f": {part}s {', '.join(numbers)}" if part else ""
+        dots = ", ..." if part and len(others) > NAMED else ""
+        text = f"{first.message} (and {len(others)} more{places}{dots})"
+        lines.append(Message(code, first.where, text))
+    return lines
 
 
 def print_files(paths: Iterable[Path | str]) -> None:

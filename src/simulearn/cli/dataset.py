@@ -1,7 +1,6 @@
 """Commands about data sets: generate, pack, info."""
 
 import json
-import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
-from rich.table import Table
 
 from simulearn.cli.base import Json, app, err, out
 from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
+from simulearn.files import cores
 
 if TYPE_CHECKING:
     from simulearn.dataset import Dataset, Tally
@@ -57,11 +56,7 @@ def generate(
         wanted = wanted.model_copy(update={"trials": trials})
     if retry:
         Folder(output, wanted).forget_failures()
-    team = (
-        sets.cluster_workers(scheduler)
-        if scheduler
-        else sets.local_workers(workers or os.cpu_count() or 1)
-    )
+    team = sets.cluster_workers(scheduler) if scheduler else sets.local_workers(workers or cores())
     try:
         with _rate(quiet=as_json) as progress:
             tally = sets.generate(wanted, output, team, progress)
@@ -71,6 +66,8 @@ def generate(
     if as_json:
         print(json.dumps(_plain(tally)))
         return
+    if tally.torn:
+        err.print(f"[yellow]made anew:[/] {tally.torn} files of trials that were torn or empty")
     for reason in tally.reasons[:10]:
         err.print(f"[yellow]failed:[/] {escape(reason)}")
     trials = tally.present + tally.done + len(tally.reasons) - tally.failed
@@ -119,7 +116,9 @@ def info(
     data = sets.read_dataset(file, stress=False)
     stored, actual = sets.checksum(file)
     if stored != actual:
-        raise InputError(f"{file}: is damaged (its SHA-256 is {actual[:12]}…, not {stored[:12]}…)")
+        raise InputError(
+            f"{file}: is damaged (its SHA-256 is {actual[:12]}..., not {stored[:12]}...)"
+        )
     figures = summary(data)
     if output is not None:
         from simulearn.show.dataset import dataset_picture
@@ -130,7 +129,8 @@ def info(
         print(json.dumps(figures))
         return
     out.print(_heading(data, figures))
-    out.print(_quantities(figures["quantities"]))
+    for line in (*_quantities(figures["quantities"]), *_of_paper(figures["quantities"])):
+        out.print(line)
     if output is not None:
         out.print(f"wrote {escape(str(output))}")
 
@@ -153,20 +153,30 @@ def _heading(data: "Dataset", figures: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _quantities(figures: dict[str, dict[str, Any]]) -> Table:
-    table = Table(box=None)
-    for name in ("", "mean", "least", "3 %", "median", "97 %", "most", "the paper's"):
-        left = name in ("", "the paper's")
-        table.add_column(name, justify="left" if left else "right", no_wrap=True)
+def _quantities(figures: dict[str, dict[str, Any]]) -> Iterator[str]:
+    """Yield the lines of a table; a table of Rich's would cut figures off on a narrow terminal."""
+    titles = {name: f"{_title(name)} {q['unit']}".strip() for name, q in figures.items()}
+    wide = max(map(len, titles.values()))
+    heads = ("mean", "least", "3 %", "median", "97 %", "most")
+    yield " " * wide + "".join(f"{head:>8}" for head in heads)
     for name, q in figures.items():
-        paper = ", ".join(
-            f"{key if key == 'mean' else key[1:] + ' %'} {value:g}"
-            for key, value in q["paper"].items()
-        )
         row = [q[key] for key in ("mean", "p0", "p3", "p50", "p97", "p100")]
-        words = f"{name.removesuffix('_percent').replace('_', ' ')} {q['unit']}".strip()
-        table.add_row(words, *(f"{value:.2f}" for value in row), paper)
-    return table
+        yield f"{titles[name]:<{wide}}" + "".join(f"{value:>8.2f}" for value in row)
+
+
+def _of_paper(figures: dict[str, dict[str, Any]]) -> Iterator[str]:
+    """Yield what the paper says of its own data set."""
+    for name, q in figures.items():
+        if q["paper"]:
+            parts = [
+                f"{key if key == 'mean' else key[1:] + ' %'} {value:g}"
+                for key, value in q["paper"].items()
+            ]
+            yield f"the paper's {_title(name)}: {', '.join(parts)} {q['unit']}"
+
+
+def _title(name: str) -> str:
+    return name.removesuffix("_percent").replace("_", " ")
 
 
 def _plain(tally: "Tally") -> dict[str, Any]:
@@ -175,6 +185,7 @@ def _plain(tally: "Tally") -> dict[str, Any]:
         "kept": tally.present,
         "new": tally.done,
         "failed": tally.failed,
+        "torn": tally.torn,
         "reasons": tally.reasons,
         "per_minute": round(tally.per_minute, 2),
     }

@@ -8,7 +8,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn.cli.base import GridArgument, Json, app, grid_of, out, validated
+from simulearn.cli.base import GridArgument, Json, app, grid_of, grouped, out, validated
 from simulearn.errors import InputError
 from simulearn.grid import (
     Grid,
@@ -40,9 +40,9 @@ def validate_(grid: GridArgument, model: ModelOption = None, as_json: Json = Fal
     if as_json:
         print(json.dumps(report.to_dict()))
     else:
-        for message in report.errors:
+        for message in grouped(report.errors):
             out.print(f"[red]error[/] {escape(message.message)} [dim]({message.code})[/]")
-        for message in report.warnings:
+        for message in grouped(report.warnings):
             out.print(f"[yellow]warning[/] {escape(message.message)} [dim]({message.code})[/]")
         if report.valid:
             out.print("[green]valid[/]")
@@ -82,7 +82,9 @@ def validation_of(grid: Grid, model: str | None) -> Validation:
         return validated(grid)
     from simulearn.learn.common.bundle import bundle_of
 
-    training = bundle_of(model).card.range
+    bundle = bundle_of(model)
+    bundle.check()
+    training = bundle.card.range
     return validate(grid, load_material(grid.material), training=training)
 
 

@@ -71,7 +71,8 @@ def search_pictures(
     # Every design by a slow engine would take as long as the search did.
     quick = task.engine in ("learned", "beams")
     simulator = engine_of(task.engine, model) if quick else engine_of("beams")
-    steps = _changes(result)
+    # A search that used up its time is not followed by pictures that take as long again.
+    steps = _changes(result, 40 if result.seconds < task.limits.seconds else 10)
     outcomes = simulator.simulate([step.grid(task.start) for step in steps])
     shape = None if check is None else check.shape
     if shape is None and isinstance(outcomes[-1], Result):
@@ -92,7 +93,7 @@ def search_pictures(
     return names
 
 
-def _changes(result: "SearchResult", most: int = 40) -> "list[Step]":
+def _changes(result: "SearchResult", most: int) -> "list[Step]":
     """Return the steps at which the best design changed, at most so many, the last one always."""
     kept: list[Step] = []
     for step in result.steps:

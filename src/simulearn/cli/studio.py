@@ -7,12 +7,12 @@ import webbrowser
 from pathlib import Path
 from typing import Annotated
 
-import platformdirs
 import typer
 from rich.markup import escape
 
 from simulearn.cli.base import app, err, out
 from simulearn.errors import InputError
+from simulearn.files import data_folder
 
 PACKAGES = ("fastapi", "starlette", "anyio", "uvicorn", "nicegui")
 
@@ -76,8 +76,14 @@ def _folder(given: Path | None) -> Path | None:
     Raises:
         InputError: the folder that was given cannot be made or written.
     """
-    default = Path(platformdirs.user_data_dir("simulearn", appauthor=False)) / "studio"
-    folder = given.absolute() if given is not None else default
+    base = data_folder()
+    if given is not None:
+        folder = given.absolute()
+    elif base is not None:
+        folder = base / "studio"
+    else:
+        err.print("[yellow]warning:[/] no home folder is known; only the browser keeps designs")
+        return None
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if not os.access(folder, os.W_OK):

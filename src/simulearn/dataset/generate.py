@@ -12,13 +12,15 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, Literal
 
 from simulearn.dataset.config import Config, config_of
-from simulearn.dataset.trial import TrialJob, TrialOutcome
+from simulearn.dataset.trial import TrialJob, TrialOutcome, is_whole
 from simulearn.dataset.workers import Workers, local_workers
 from simulearn.errors import ComputationError, InputError
 from simulearn.files import cores, read_text, replacing
 
+PATIENCE = 10.0  # s without an answer, after which it is checked that somebody computes
 AHEAD = 2  # jobs given to each worker, so that none waits for its next
 TRIES = 3  # of a trial whose worker dies
 DIED = TrialOutcome("broken", reason=f"its worker died, {TRIES} times")
@@ -32,6 +34,7 @@ class Tally:
         trials: designs in the set.
         present: trials and failures that were there before this run.
         done: trials of this run.
+        torn: of them or still to come, those whose file was there but empty, torn or odd.
         failed: failures in the folder, of this run or before.
         seconds: the solver's time in the trials of this run.
         reasons: why trials of this run failed.
@@ -41,6 +44,7 @@ class Tally:
     present: int = 0
     done: int = 0
     failed: int = 0
+    torn: int = 0
     seconds: float = 0.0
     reasons: list[str] = field(default_factory=list)
     begun: float = field(default_factory=time.monotonic)
@@ -97,9 +101,19 @@ class Folder:
         """Return where it is kept why a design has no trial."""
         return self.path / "failures" / f"{key}.json"
 
-    def has(self, key: str) -> bool:
-        """Return whether a design needs no more work."""
-        return self.trial(key).exists() or self.failure(key).exists()
+    def state(self, key: str) -> Literal["done", "failed", "torn", "missing"]:
+        """Return what is there of a design; a torn file is as good as none, but is told."""
+        if is_whole(self.trial(key)):
+            return "done"
+        if self.why(key) is not None:
+            return "failed"
+        there = self.trial(key).exists() or self.failure(key).exists()
+        return "torn" if there else "missing"
+
+    def why(self, key: str) -> str | None:
+        """Return why a design has no trial, None where no sound file says so."""
+        record = _record(self.failure(key))
+        return None if record is None else str(record["reason"])
 
     def keep(self, k: int, job: TrialJob, answer: TrialOutcome) -> None:
         """Keep an answer."""
@@ -119,7 +133,8 @@ class Folder:
     def forget_failures(self, outcomes: Collection[str] = ("failed", "broken")) -> None:
         """Forget failures of some outcomes, so that they are tried again."""
         for path in (self.path / "failures").glob("*.json"):
-            if json.loads(read_text(path)).get("outcome") in outcomes:
+            record = _record(path)
+            if record is not None and record["outcome"] in outcomes:
                 path.unlink()
 
     def sweep(self) -> None:
@@ -132,8 +147,22 @@ class Folder:
         try:
             data = json.loads(read_text(path))
         except json.JSONDecodeError as error:
-            raise InputError(f"{path}: is not valid JSON: {error}") from error
+            raise InputError(
+                f"{path}: is damaged ({error}); delete it, and generate the set again: its trials "
+                "are kept"
+            ) from error
         return config_of(data, str(path))
+
+
+def _record(path: Path) -> dict[str, Any] | None:
+    """Return the record of a failure; None where there is none, or a file that is no such thing."""
+    try:
+        record = json.loads(read_text(path))
+    except (InputError, ValueError, RecursionError):
+        return None
+    if not isinstance(record, dict) or not {"outcome", "reason"} <= record.keys():
+        return None
+    return record
 
 
 def generate(
@@ -152,7 +181,7 @@ def generate(
 
     Raises:
         InputError: the folder holds another set, or cannot be written.
-        ComputationError: the disk is full, or no worker is left.
+        ComputationError: the disk is full, no worker can be started, or none is left.
     """
     folder = Folder(path, config)
     folder.sweep()
@@ -171,7 +200,10 @@ def generate(
             while upcoming and len(running) < AHEAD * max(team.count(), 1):
                 running[team.submit(upcoming[1])] = (*upcoming, 1)
                 upcoming = next(todo, None)
-            for future in wait(running, return_when=FIRST_COMPLETED)[0]:
+            finished, _ = wait(running, timeout=PATIENCE, return_when=FIRST_COMPLETED)
+            if not finished:
+                team.check()
+            for future in finished:
                 k, job, tries = running.pop(future)
                 answer = _answer(future)
                 if answer is None and tries < TRIES:
@@ -186,10 +218,12 @@ def _missing(folder: Folder, tally: Tally) -> Iterator[tuple[int, TrialJob]]:
     """Yield the designs that have no trial yet, and count those that have."""
     for k in range(folder.config.trials):
         job = TrialJob.of(folder.config.design(k)[0], folder.config)
-        if folder.has(job.key):
+        state = folder.state(job.key)
+        if state in ("done", "failed"):
             tally.present += 1
-            tally.failed += folder.failure(job.key).exists()
+            tally.failed += state == "failed"
         else:
+            tally.torn += state == "torn"
             yield k, job
 
 

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from simulearn.dataset.config import Config
 from simulearn.dataset.generate import Folder
 from simulearn.dataset.packed import SCHEMA, digest
-from simulearn.dataset.trial import SOLVER_VERSION, StoredTrial, TrialJob, read_trial
+from simulearn.dataset.trial import SOLVER_VERSION, StoredTrial, TrialJob, is_whole, read_trial
 from simulearn.errors import InputError
-from simulearn.files import read_text, replacing
+from simulearn.files import replacing
 from simulearn.grid import Grid
 
 POSITION = 0.005  # mm
@@ -76,17 +76,17 @@ def pack(
         grid, redrawn = config.design(k)
         redraws += redrawn
         key = TrialJob.of(grid, config).key
-        if source.trial(key).exists():
+        if is_whole(source.trial(key)):
             member = _Member(k, grid, read_trial(source.trial(key)))
             groups[len(grid.joints), grid.fixed, tuple(grid.beams.ravel().tolist())].append(member)
-        elif source.failure(key).exists():
-            failures.append((k, json.loads(read_text(source.failure(key)))["reason"]))
+        elif (why := source.why(key)) is not None:
+            failures.append((k, why))
         else:
             missing += 1
     if missing and not partial:
         raise InputError(
-            f"{folder}: {missing} of {config.trials} trials are not there yet; generate them "
-            "first, or pack only what is there"
+            f"{folder}: {missing} of {config.trials} trials are not there yet, or are torn; "
+            "generate them first, or pack only what is there"
         )
     if not groups:
         raise InputError(f"{folder}: holds no trial yet")

@@ -131,7 +131,7 @@ def read_dataset(path: Path | str, split: Split | None = None, stress: bool = Tr
             config = config_of(json.loads(attributes.pop("config")), str(path))
             sha256, redraws = str(attributes.pop("sha256")), int(attributes.pop("redraws"))
     except OSError as error:
-        raise InputError(f"{path}: is not an HDF5 file, or is damaged ({error})") from error
+        raise InputError(f"{path}: {_why_not(error)}") from error
     except (KeyError, ValueError, IndexError, TypeError) as error:
         raise InputError(f"{path}: is damaged: {error}") from error
     return Dataset(
@@ -143,6 +143,18 @@ def read_dataset(path: Path | str, split: Split | None = None, stress: bool = Tr
         redraws,
         records,
     )
+
+
+def _why_not(error: OSError) -> str:
+    """Return why HDF5 cannot open a file."""
+    if "unable to lock file" in str(error):
+        return (
+            "is locked by another program, which may be writing it; close that first, or, where "
+            "the disk knows no locks, set HDF5_USE_FILE_LOCKING=FALSE"
+        )
+    if isinstance(error, PermissionError):
+        return f"cannot be read ({error.strerror})"
+    return f"is not an HDF5 file, or is damaged ({error})"
 
 
 def checksum(path: Path | str) -> tuple[str, str]:

@@ -9,6 +9,7 @@ import hashlib
 import io
 import json
 import zipfile
+import zlib
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -114,6 +115,15 @@ def run(job: TrialJob) -> TrialOutcome:
     return TrialOutcome("done", buffer.getvalue(), seconds=trial.seconds)
 
 
+def is_whole(path: Path) -> bool:
+    """Return whether a trial's file is there and complete, by the checksums that it holds."""
+    try:
+        with zipfile.ZipFile(path) as file:
+            return bool(file.namelist()) and file.testzip() is None
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error):
+        return False
+
+
 def read_trial(path: Path) -> StoredTrial:
     """Read a trial from its file.
 
@@ -131,5 +141,5 @@ def read_trial(path: Path) -> StoredTrial:
                 json.loads(file["record"].item()),
                 float(file["seconds"]),
             )
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{path}: is not a trial; delete it and generate the set again") from error
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise InputError(f"{path}: is not a trial; generate the set again") from error

@@ -6,17 +6,27 @@ and never write files, so a cluster needs no common disk.
 
 import os
 import signal
+import socket
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from multiprocessing import get_context, parent_process
+from multiprocessing import parent_process
+from multiprocessing.context import SpawnContext, SpawnProcess
+from time import monotonic, sleep
+from typing import Any
 
-from simulearn.dataset.trial import TrialJob, TrialOutcome, run
-from simulearn.errors import InputError
+from simulearn import __version__
+from simulearn.dataset.trial import SOLVER_VERSION, TrialJob, TrialOutcome, run
+from simulearn.errors import ComputationError, InputError
 
 LONGEST = 900.0  # s; a trial takes seconds, and a minute where kernels are compiled
+ANSWERING = 10.0  # s that a scheduler may take to answer at first
+WAITING = 30.0  # s that a cluster may be without workers
+
+_starting = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -26,55 +36,199 @@ class Workers:
     Attributes:
         submit: give a job to them; the future brings its answer.
         count: how many there are now.
+        check: called while no answer comes; raises ComputationError where none will come.
     """
 
     submit: Callable[[TrialJob], "Future[TrialOutcome]"]
     count: Callable[[], int]
+    check: Callable[[], None] = lambda: None
 
 
 @contextmanager
 def local_workers(processes: int, longest: float = LONGEST) -> Iterator[Workers]:
-    """Yield processes of this machine; a trial that takes too long (s) is given up."""
+    """Yield processes of this machine; a trial that takes too long (s) is given up.
+
+    They do not run the caller's script again, as new processes do in Python: it needs no guard.
+
+    Raises:
+        ComputationError: no process can be started.
+    """
     from pebble import ProcessPool
 
-    pool = ProcessPool(processes, initializer=_begin, context=get_context("spawn"))
-    with _no_interrupts():
-        assert pool.active  # its threads start now, and hand on to workers what is blocked here
     try:
-        yield Workers(
-            lambda job: pool.schedule(run, args=(job,), timeout=longest), lambda: processes
-        )
+        pool = ProcessPool(processes, initializer=_begin, context=_Context())
+        with _no_interrupts():
+            # Its threads start now, and hand on to workers what is blocked here.
+            assert pool.active
+    except OSError as error:
+        raise _not_started(error.strerror or str(error)) from error
+
+    def submit(job: TrialJob) -> "Future[TrialOutcome]":
+        try:
+            return pool.schedule(run, args=(job,), timeout=longest)
+        except RuntimeError as error:  # the pool has given up
+            raise _not_started("they end as soon as they begin") from error
+
+    try:
+        yield Workers(submit, lambda: processes)
     finally:
         pool.stop()
         pool.join()
 
 
+def _not_started(why: str) -> ComputationError:
+    return ComputationError(
+        f"worker processes cannot be started ({why})",
+        "workers",
+        hint="they need memory, and some room in the folder for shared memory (/dev/shm)",
+    )
+
+
+class _Process(SpawnProcess):
+    """A process that does not import the caller's script."""
+
+    @staticmethod
+    def _Popen(process_obj: Any) -> Any:  # noqa: N802  (a name of Python's own)
+        # Python hands on where the script is, if there is one; our workers need nothing of it, and
+        # a script without a guard would begin its own work again, one from stdin cannot be found.
+        with _starting, _without_script():
+            return SpawnProcess._Popen(process_obj)
+
+
+class _Context(SpawnContext):
+    Process = _Process
+
+
 @contextmanager
-def cluster_workers(address: str) -> Iterator[Workers]:
+def _without_script() -> Iterator[None]:
+    """Let the caller's script look as if it were typed into an interpreter."""
+    names: dict[str, Any] = vars(sys.modules["__main__"])
+    kept: dict[str, Any] = {name: names[name] for name in ("__spec__", "__file__") if name in names}
+    names["__spec__"] = None
+    names.pop("__file__", None)
+    try:
+        yield
+    finally:
+        names.update(kept)
+
+
+@contextmanager
+def cluster_workers(address: str, waiting: float = WAITING) -> Iterator[Workers]:
     """Yield the workers of a Dask cluster.
 
     Args:
         address: of its scheduler, as tcp://host:8786.
+        waiting: s that it may be without workers.
 
     Raises:
         InputError: nobody answers there, or Dask is not installed.
+        ComputationError: it has no workers, or they have not this version of SimuLearn.
     """
     try:
         from distributed import Client
     except ImportError as error:
         raise InputError("a cluster needs Dask: pip install 'simulearn[cluster]'") from error
     try:
-        client = Client(address, timeout=10, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise InputError(f"{address}: no Dask scheduler answers there") from error
+        _knock(address)
+        client = Client(address, timeout=ANSWERING, set_as_default=False)
+    except Exception as error:  # Dask raises many kinds for what is no scheduler
+        raise InputError(
+            f"{address}: no Dask scheduler answers there; an address is as tcp://host:8786"
+        ) from error
+    team = _Cluster(client, address, waiting)
     try:
-        executor = client.get_executor(pure=False)
-        yield Workers(
-            lambda job: executor.submit(run, job),
-            lambda: sum(client.nthreads().values()),
-        )
+        team.begin()
+        yield Workers(team.submit, team.count, team.check)
     finally:
-        client.close()
+        with suppress(Exception):  # the scheduler may be gone
+            client.close(timeout=5)
+
+
+def _knock(address: str) -> None:
+    """Raise OSError or ValueError where nobody listens; Dask would leave threads behind."""
+    scheme, _, place = address.rpartition("://")
+    host, _, port = place.rpartition(":")
+    if not host:
+        raise ValueError("no host and port")
+    if scheme in ("", "tcp", "tls", "ws", "wss"):
+        socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWERING).close()
+
+
+class _Cluster:
+    """The workers of a Dask cluster.
+
+    Args:
+        client: of its scheduler.
+        address: for messages.
+        waiting: s that it may be without workers.
+    """
+
+    def __init__(self, client: Any, address: str, waiting: float) -> None:
+        self._client, self._address, self._waiting = client, address, waiting
+        self._executor = client.get_executor(pure=False)
+        self._last = monotonic()  # when there was a worker
+
+    def begin(self) -> None:
+        """Wait for workers, and make sure that they can do the work."""
+        while not self.count():
+            self.check()
+            sleep(0.2)
+        ours = f"{__version__}, solver {SOLVER_VERSION}"
+        theirs = self._asked(lambda: self._client.run(_version(), on_error="return"))
+        for worker, answer in theirs.items():
+            if answer != ours:
+                has = "no SimuLearn that works" if isinstance(answer, BaseException) else answer
+                raise ComputationError(
+                    f"the worker {worker} has {has}; this machine has {ours}",
+                    "workers",
+                    hint="install the same version on all of them",
+                )
+
+    def submit(self, job: TrialJob) -> "Future[TrialOutcome]":
+        """Give a job to a worker."""
+        future: Future[TrialOutcome] = self._asked(lambda: self._executor.submit(run, job))
+        return future
+
+    def count(self) -> int:
+        """Return how many threads of workers there are."""
+        threads = self._asked(lambda: sum(self._client.nthreads().values()))
+        if threads:
+            self._last = monotonic()
+        return int(threads)
+
+    def check(self) -> None:
+        """Raise ComputationError where the scheduler or all workers are gone."""
+        if not self.count() and monotonic() - self._last > self._waiting:
+            raise ComputationError(
+                f"{self._address}: the scheduler has had no workers for {self._waiting:.0f} s",
+                "workers",
+                hint=f"start some: dask worker {self._address}",
+            )
+
+    def _asked(self, question: Callable[[], Any]) -> Any:
+        """Return what the scheduler answers."""
+        try:
+            if self._client.status in ("closed", "closing"):
+                raise OSError("the connection is closed")
+            return question()
+        except Exception as error:
+            raise ComputationError(
+                f"{self._address}: the Dask scheduler answers no more ({type(error).__name__})",
+                "scheduler",
+                hint="what is finished is kept, and the same command goes on",
+            ) from error
+
+
+def _version() -> Callable[[], str]:
+    """Return a function that says which version a worker has; it travels with its code."""
+
+    def version() -> str:
+        from simulearn import __version__
+        from simulearn.dataset.trial import SOLVER_VERSION
+
+        return f"{__version__}, solver {SOLVER_VERSION}"
+
+    return version
 
 
 @contextmanager

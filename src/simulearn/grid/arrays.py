@@ -25,7 +25,9 @@ CODES = {
     "actuators": ("actuator-ratio", "beam"),
 }
 
+NOT_FLAT = "; z is not 0: a grid is drawn flat, in the plane z = 0"
 INDEX = 2**31  # indices are below it
+FLAT = 1e-6  # mm; places so near the plane z = 0 lie in it, whatever rounding did
 
 
 def numbers(values: Any, key: str, width: int = 0) -> NDArray[np.float64]:
@@ -43,6 +45,35 @@ def numbers(values: Any, key: str, width: int = 0) -> NDArray[np.float64]:
     if not np.isfinite(array).all():
         _refuse(values, key, width)
     return array.astype(np.float64, copy=False)
+
+
+def places(values: Any) -> NDArray[np.float64]:
+    """Return places in the plane as an array of their own, (n, 2) mm.
+
+    Args:
+        values: entries [x, y], or [x, y, z] where all z are 0, as programs for space write them.
+
+    Raises:
+        InputError: an entry is no such place; the message names it.
+    """
+    entries = _plain(values)
+    if not isinstance(entries, list | tuple) or not any(map(_in_space, entries)):
+        return numbers(values, "joints", 2)
+    for k, entry in enumerate(entries):
+        if not _in_space(entry):
+            continue
+        text, where = f"joints[{k}] is {shown(entry)}; {KEYS['joints']}", f"joint {k}"
+        if not all(_is_number(_plain(x)) for x in entry):
+            raise InputError(text, "joint-place", where)
+        if abs(entry[2]) > FLAT:
+            raise InputError(text + NOT_FLAT, "joints-in-space", where)
+    return numbers([e[:2] if _in_space(e) else e for e in entries], "joints", 2)
+
+
+def whole(value: Any) -> Any:
+    """Return a float without a fraction as an int, such as 1.0 as 1, and all else as it is."""
+    fits = isinstance(value, float) and value.is_integer() and abs(value) < INDEX
+    return int(value) if fits else value
 
 
 def indices(values: Any, key: str) -> NDArray[np.int64]:
@@ -86,12 +117,6 @@ def shown(value: Any, most: int = 40) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
-def hint(key: str, value: Any) -> str:
-    """Return what to do about a wrong value, where that is plain."""
-    in_space = key == "joints" and isinstance(value, list | tuple) and len(value) == 3
-    return "; drop z" if in_space else ""
-
-
 def _array(values: Any, key: str, width: int) -> NDArray[Any]:
     """Return an array of real numbers, (n,) or (n, width)."""
     try:
@@ -126,8 +151,12 @@ def _refuse(values: Any, key: str, width: int) -> NoReturn:
             break
     else:
         place, where, wrong = key, key, values
-    text = f"{place} is {shown(wrong)}; {KEYS[key]}{hint(key, wrong)}"
+    text = f"{place} is {shown(wrong)}; {KEYS[key]}"
     raise InputError(text, code, where)
+
+
+def _in_space(entry: Any) -> bool:
+    return isinstance(entry, list | tuple) and len(entry) == 3
 
 
 def _plain(value: Any) -> Any:

@@ -14,6 +14,7 @@ from simulearn.grid.cleaning import kept
 from simulearn.grid.grid import Grid
 from simulearn.grid.outline import Outlines, outlines
 from simulearn.grid.overlap import overlaps
+from simulearn.grid.size import impossible
 from simulearn.grid.structure import FARTHEST, structure_errors
 from simulearn.material import Material
 from simulearn.material.material import Limits
@@ -290,6 +291,7 @@ def check_designs(
         & (shape.sound | ~at.joints).all(axis=1)
         & ~(wrong_beams & at.beams).any(axis=1)
     )
+    valid &= ~impossible(measured.full, material)
     valid[coincident(joints, most=1)[:, 0]] = False
     valid[collisions(shape, at.beams & valid[:, None])[:, 0]] = False
 

@@ -12,8 +12,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from simulearn.display import Displayed
 from simulearn.errors import InputError
-from simulearn.grid.arrays import KEYS, index, indices, numbers, shown
+from simulearn.grid.arrays import KEYS, index, indices, numbers, places, shown
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Support:
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class Grid(Displayed):
     """A flat grid of printed beams.
 
     Attributes:
@@ -44,8 +45,9 @@ class Grid:
         material: name of the material system, or the path of its TOML file.
 
     Raises:
-        InputError: an array has another shape, as with joints in space, or holds what is not a
-            finite number; an index is no integer (1.0 counts as one). The message names the entry.
+        InputError: an array has another shape or holds what is not a finite number; joints are not
+            in the plane (z is dropped where it is 0); an index is no integer (1.0 counts as one).
+            The message names the entry.
             Indices that do not exist and ratios out of range are left to `validate`.
     """
 
@@ -67,7 +69,7 @@ class Grid:
             text = f"material is {shown(material)}; {KEYS['material']}"
             raise InputError(text, "material", "material")
         own = self.__dict__  # the class is frozen
-        own["joints"] = numbers(joints, "joints", 2)
+        own["joints"] = places(joints)
         own["beams"] = indices(beams, "beams")
         own["actuators"] = numbers(actuators, "actuators")
         own["fixed"] = index(fixed, "fixed")

@@ -4,12 +4,12 @@ import json
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from simulearn.errors import InputError
 from simulearn.files import parse_json, read_text, replacing
 from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
-from simulearn.grid.arrays import hint, shown
+from simulearn.grid.arrays import shown, whole
 from simulearn.grid.grid import Grid
 from simulearn.grid.structure import structure_errors
 from simulearn.material.material import is_name
@@ -17,7 +17,8 @@ from simulearn.material.material import is_name
 SCHEMA = "simulearn.grid/1"
 MOST_BYTES = 2**24  # several times the largest grid that can be computed
 
-Index = Annotated[int, Field(ge=0, lt=2**31)]  # the type's bound; the grid's is checked later
+# The type's bound; the grid's is checked later. Many programs write 1.0 for 1.
+Index = Annotated[int, BeforeValidator(whole), Field(ge=0, lt=2**31)]
 
 
 class GridFile(BaseModel):
@@ -27,7 +28,8 @@ class GridFile(BaseModel):
 
     schema_: Literal["simulearn.grid/1"] = Field(alias="schema")
     # Lists, since strict validation takes no list for a tuple.
-    joints: list[Annotated[list[float], Field(min_length=2, max_length=2)]]
+    # A z is allowed here; whether it is 0 is for `Grid` to say.
+    joints: list[Annotated[list[float], Field(min_length=2, max_length=3)]]
     beams: list[Annotated[list[Index], Field(min_length=2, max_length=2)]]
     actuators: list[float]
     fixed: Index
@@ -35,6 +37,7 @@ class GridFile(BaseModel):
 
 
 KEYS = {"schema": f'this program reads "{SCHEMA}"', **KEYS_OF_GRID}
+WHOLE = f"a grid is an object with the keys {', '.join(KEYS)}"
 
 
 def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
@@ -47,10 +50,18 @@ def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
     Raises:
         InputError: the file cannot be read or does not describe a grid; one line says where.
     """
-    text = read_text(path, MOST_BYTES)
+    try:
+        text = read_text(path, MOST_BYTES)
+    except InputError as error:
+        if not isinstance(error.__cause__, UnicodeDecodeError):
+            raise
+        raise InputError(f"{path}: is not a grid file, which is text", "not-a-grid") from error
     try:
         return grid_from_dict(parse_json(text), paths=paths)
     except InputError as error:
+        if error.code == "json" and text.strip() and text.lstrip()[0] not in "{[":
+            line = f"{path}: is not a grid file, which is JSON and begins with {{"
+            raise InputError(line, "not-a-grid") from error
         raise InputError(f"{path}: {error}", error.code, error.where) from error
 
 
@@ -78,6 +89,8 @@ def grid_from_dict(data: Any, *, paths: bool = False) -> Grid:
     Raises:
         InputError: a key, type, length, index or number is wrong; one line says which.
     """
+    if not isinstance(data, dict) or not {"schema", "joints", "beams"} & data.keys():
+        raise InputError(f"is {shown(data)}; {WHOLE}", "not-a-grid")
     try:
         file = GridFile.model_validate(data)
     except ValidationError as error:
@@ -110,11 +123,11 @@ def _line(error: Any) -> str:
     """Return one of pydantic's errors in our words."""
     place, value = error["loc"], error["input"]
     if not place:
-        return f"is {shown(value)}; a grid is an object with the keys {', '.join(KEYS)}"
+        return f"is {shown(value)}; {WHOLE}"
     key = str(place[0])
     if error["type"] == "missing":
         return f"{key} is missing; {KEYS[key]}"
     if key not in KEYS:
         return f"{shown(place[0])} is not a key of a grid; its keys are {', '.join(KEYS)}"
     where = key + "".join(f"[{k}]" for k in place[1:])
-    return f"{where} is {shown(value)}; {KEYS[key]}{hint(key, value)}"
+    return f"{where} is {shown(value)}; {KEYS[key]}"

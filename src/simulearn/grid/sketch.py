@@ -46,10 +46,14 @@ def sketch(
         for i, j in pairwise(through):
             if (j, i) not in beams:
                 beams[i, j] = None
-    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    return Grid(places, list(beams), np.zeros(len(beams)), middle_joint(places), material)
+
+
+def middle_joint(joints: Numbers) -> int:
+    """Return which of the joints (J, 2) is nearest to the middle of all, the first of several."""
+    middle = (joints.min(axis=0) + joints.max(axis=0)) / 2
     # Rounded, so that ties do not hang on the last bit.
-    fixed = np.argmin(np.linalg.norm(places - middle, axis=1).round(6))
-    return Grid(places, list(beams), np.zeros(len(beams)), int(fixed), material)
+    return int(np.argmin(np.linalg.norm(joints - middle, axis=1).round(6)))
 
 
 def _points(line: ArrayLike, k: int) -> Numbers:
@@ -76,15 +80,16 @@ def _crossings(pieces: Numbers) -> Numbers:
     order = np.lexsort((b, a))
     a, b = pieces[a[order]], pieces[b[order]]
     along, across, apart = a[:, 1] - a[:, 0], b[:, 1] - b[:, 0], b[:, 0] - a[:, 0]
-    turn = _cross(along, across)
+    turn = cross(along, across)
     with np.errstate(divide="ignore", invalid="ignore"):
-        s, t = _cross(apart, across) / turn, _cross(apart, along) / turn
+        s, t = cross(apart, across) / turn, cross(apart, along) / turn
     meet = (turn != 0) & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
     points: Numbers = a[meet, 0] + s[meet, None] * along[meet]
     return points
 
 
-def _cross(a: Numbers, b: Numbers) -> Numbers:
+def cross(a: Numbers, b: Numbers) -> Numbers:
+    """Return the cross products (n,) of vectors (n, 2) in the plane."""
     product: Numbers = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     return product
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import Message
 from simulearn.grid.grid import Grid
+from simulearn.grid.size import unit_remark
 
 # Far beyond any printer; keeps squares and products of coordinates from overflowing (mm).
 FARTHEST = 1e5
@@ -28,8 +29,9 @@ def structure_errors(grid: Grid) -> list[Message]:
     if actuators != beams:
         text = f"actuators has {actuators} ratios for {beams} beams; there is one for each beam"
         errors.append(Message("actuator-count", "grid", text))
-    for k in np.flatnonzero((abs(grid.joints) > FARTHEST).any(axis=1)).tolist():
-        text = f"coordinates lie within {FARTHEST:g} mm of the origin"
+    far = np.flatnonzero((abs(grid.joints) > FARTHEST).any(axis=1)).tolist()
+    for k in far:
+        text = f"coordinates lie within {FARTHEST:g} mm of the origin{unit_remark(grid)}"
         place = f"joints[{k}] is {grid.joints[k].tolist()}"
         errors.append(Message("joint-place", f"joint {k}", f"{place}; {text}"))
     errors += _beam_errors(grid)
@@ -68,6 +70,6 @@ def _beam_errors(grid: Grid) -> list[Message]:
 
 
 def _hint(low: NDArray[np.int64], high: NDArray[np.int64], joints: int) -> str:
-    """Return what to do where the beams of all joints count them from 1."""
-    from_one = low.min() == 1 and high.max() == joints
+    """Return what to do where the joints' numbers begin and end one too high."""
+    from_one = low.min() >= 1 and high.max() == joints
     return "; these count from 1: subtract 1 from every index" if from_one else ""

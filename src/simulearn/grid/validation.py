@@ -8,12 +8,13 @@ Rules and limits: Yang et al., SimuLearn, UIST 2020, Figure 15, and the authors'
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.display import Displayed
 from simulearn.errors import Message
 from simulearn.grid.checks import (
     ONE_PLACE,
@@ -33,7 +34,9 @@ from simulearn.grid.checks import (
 )
 from simulearn.grid.cleaning import fixed_removed, warnings_of
 from simulearn.grid.grid import Grid
+from simulearn.grid.joining import missing_joints
 from simulearn.grid.outline import Outlines, outlines
+from simulearn.grid.size import size_message
 from simulearn.grid.structure import structure_errors
 from simulearn.material import Material
 from simulearn.material.material import Limits
@@ -45,7 +48,7 @@ MOST_NAMED = 1000
 
 
 @dataclass(frozen=True)
-class Validation:
+class Validation(Displayed):
     """The errors and warnings about a design.
 
     Attributes:
@@ -88,8 +91,24 @@ def validate(
     """
     if wrong := structure_errors(grid):
         return Validation(tuple(wrong), ())
-    limits = limits or material.limits
+    report = _validated(grid, material, limits or material.limits, training)
+    counted = _counted_from_one(grid, report, material, limits, training)
+    if counted is None:
+        return report
+    if report.errors:
+        return replace(report, errors=(counted, *report.errors))
+    return replace(report, warnings=(counted, *report.warnings))
+
+
+def _validated(
+    grid: Grid, material: Material, limits: Limits, training: TrainingRange | None
+) -> Validation:
+    """Return all errors and warnings about a grid whose numbers and indices are right."""
     at = connections(grid)
+    size, wrong_size = size_message(grid, material, usual_length(limits, training)[1])
+    removed = warnings_of(grid, at.joints, at.beams)
+    if size is not None and wrong_size:  # all else that is wrong of its beams follows from it
+        return Validation((size, *_layout(grid, at)), tuple(removed))
     joints = grid.joints[None]
     coinciding = coincident(joints, MOST_NAMED)[:MOST_NAMED, 1:].tolist()
     errors = [*_coincidences(grid, coinciding), *_layout(grid, at)]
@@ -101,13 +120,15 @@ def validate(
     faced = at.beams & shape.sound[0, grid.beams].all(axis=1)  # with an outline at both ends
     crowded = faced & (measured.edge[0] < SHORTEST_EDGE)
     errors += _beam_errors(grid, measured, faced, crowded, limits)
-    warnings = [
-        *warnings_of(grid, at.joints, at.beams),
-        *_beam_warnings(measured, faced, limits, training),
-    ]
+    warnings = [] if size is None else [size]
+    warnings += removed
+    if size is None:
+        warnings += _beam_warnings(measured, faced, limits, training)
     if not coinciding:
-        errors += _collisions(shape, faced & ~crowded)
-        if training is not None and at.beams.any():
+        parted = _parted(grid, shape, faced & ~crowded, material.section.width, at)
+        errors = [*parted.errors, *errors, *parted.overlaps]
+        warnings = [*parted.warnings, *warnings]
+        if training is not None and at.beams.any() and size is None:
             warnings += _size(grid, at, training)
     net = {b: float(measured.net[0, b]) for b in np.flatnonzero(faced).tolist()}
     return Validation(tuple(errors), tuple(warnings), net)
@@ -227,13 +248,81 @@ def _beam_warnings(
             yield Message("beam-short", where, text)
 
 
-def _collisions(shape: Outlines, roomy: Mask) -> Iterator[Message]:
-    """Yield an error for each two parts that overlap, of the joints and the roomy beams (B,)."""
-    joints = len(shape.valence)
-    for _, *two in collisions(shape, roomy[None], MOST_NAMED).tolist():
-        a, b = (f"joint {k}" if k < joints else f"beam {k - joints}" for k in two)
+@dataclass(frozen=True)
+class _Parted:
+    """What is to be said of parts that meet and are not joined."""
+
+    errors: list[Message]
+    warnings: list[Message]
+    overlaps: list[Message]
+
+
+def _parted(grid: Grid, shape: Outlines, roomy: Mask, width: float, at: Connections) -> _Parted:
+    """Return messages about missing joints, and about other parts that overlap.
+
+    A missing joint is an error where the grid is not valid for it: where all its parts stay, they
+    overlap; a part that no beam leads to is an error of its own. Else a beam dangles for want of
+    it, which is a warning.
+
+    Args:
+        grid: no two of its joints are at one place.
+        shape: its outline.
+        roomy: (B,) the beams with an outline and room between their joints.
+        width: of the beams, mm.
+        at: its connections.
+    """
+    two = collisions(shape, roomy[None], MOST_NAMED)[:, 1:].tolist()
+    if not two and len(at.parts) < 2 and at.beams.all():
+        return _Parted([], [], [])
+    count = len(shape.valence)
+    said: set[tuple[int, int]] = set()  # pairs of parts, numbered as collisions are
+    errors: list[Message] = []
+    warnings: list[Message] = []
+    for missing in missing_joints(grid, width, MOST_NAMED):
+        beams = list(missing.beams)
+        if missing.joint is None:
+            said.add((count + min(beams), count + max(beams)))
+        else:
+            there = np.flatnonzero((grid.beams == missing.joint).any(axis=1)).tolist()
+            said |= {(count + min(b, *beams), count + max(b, *beams)) for b in there}
+            said.add((missing.joint, count + beams[0]))
+            beams += there
+        wrong = bool(at.beams[beams].all()) or len(at.parts) > 1
+        message = Message("joint-missing", f"beam {missing.beams[-1]}", missing.text)
+        (errors if wrong else warnings).append(message)
+    overlaps = []
+    for pair in two:
+        if tuple(pair) in said:
+            continue
+        a, b = (f"joint {k}" if k < count else f"beam {k - count}" for k in pair)
         text = f"{a} and {b} overlap; parts of a grid meet only end to end"
-        yield Message("overlap", b, text)
+        overlaps.append(Message("overlap", b, text))
+    return _Parted(errors, warnings, overlaps)
+
+
+def _counted_from_one(
+    grid: Grid,
+    report: Validation,
+    material: Material,
+    limits: Limits | None,
+    training: TrainingRange | None,
+) -> Message | None:
+    """Return a message where a grid makes more sense with its indices counted from 1."""
+    unused = {message.where for message in report.warnings if message.code == "unused-joint"}
+    if "joint 0" not in unused or not len(grid.beams) or grid.beams.min() < 1 or grid.fixed < 1:
+        return None
+    meant = Grid(grid.joints, grid.beams - 1, grid.actuators, grid.fixed - 1, grid.material)
+    other = _validated(meant, material, limits or material.limits, training)
+    counts = [(len(it.errors), len(it.warnings)) for it in (report, other)]
+    if other.errors or counts[1] >= counts[0]:
+        return None
+    return Message(
+        "counted-from-one",
+        "grid",
+        "the indices of joints seem to count from 1: no beam meets joint 0, and with 1 subtracted "
+        f"from every index the grid {'is valid' if report.errors else 'has fewer warnings'}; "
+        "joints count from 0",
+    )
 
 
 def _size(grid: Grid, at: Connections, training: TrainingRange) -> Iterator[Message]:

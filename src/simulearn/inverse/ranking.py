@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.display import Displayed
 from simulearn.errors import Cancel, ComputationError
 from simulearn.grid import Grid
 from simulearn.inverse.changes import Change, changes
@@ -47,7 +48,7 @@ class Suggestion:
 
 
 @dataclass(frozen=True, eq=False)
-class Ranking:
+class Ranking(Displayed):
     """All valid modifications of a design, the best first.
 
     Attributes:

@@ -1,5 +1,7 @@
 """Targets that nothing can come near: beyond the length of the beams, or in another unit."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,6 +10,11 @@ from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 
 SLACK = 1.1  # of the beams' length, which a target may be away; joints may move outwards
+LEAST = 0.3  # of the dimension; targets in the right unit hardly lie all nearer
+UNITS = {"metres": 1000.0, "inches": 25.4, "centimetres": 10.0}
+# Of the dimension: a design that stays so far from its targets does not come near them, where
+# something speaks for it beforehand and where nothing does.
+FAR, VERY_FAR = 0.1, 0.5
 TINY = 0.05  # of the dimension; if all targets are nearer, they are perhaps in metres
 
 
@@ -25,6 +32,13 @@ def out_of_reach(grid: Grid, goals: Goals) -> list[Message]:
             f"all targets lie within {away.max():.3g} mm of the fixed joint, and the grid reaches "
             f"{grid.dimension:.0f} mm; targets are in mm, seen from the fixed joint"
         )
+        likely = [
+            (name, factor)
+            for name, factor in UNITS.items()
+            if LEAST * grid.dimension < factor * away.max() < SLACK * grid.dimension
+        ]
+        if likely:
+            text += "; if they are in {}, multiply them by {:g}".format(*likely[0])
         return [Message("targets-tiny", "goals", text)]
     path = _paths(grid)
     messages = []
@@ -38,6 +52,26 @@ def out_of_reach(grid: Grid, goals: Goals) -> list[Message]:
             )
             messages.append(Message("target-far", f"goals[{k}]", text))
     return messages
+
+
+def not_near(grid: Grid, error: float, reach: Sequence[Message]) -> list[Message]:
+    """Return a warning where the best design does not come near its targets, and the likely reason.
+
+    Args:
+        grid: the design to begin with.
+        error: of the best design, mm.
+        reach: what `out_of_reach` says of the targets.
+    """
+    reasons = {
+        "targets-tiny": "they are probably in another unit",
+        "target-far": "they lie farther away than the beams reach",
+    }
+    why = [reasons[message.code] for message in reach if message.code in reasons]
+    if error < (FAR if why else VERY_FAR) * grid.dimension:
+        return []
+    reason = why[0] if why else "actuators and joints that may change do not lead there"
+    text = f"no design comes near the targets ({error:.0f} mm are left): {reason}"
+    return [Message("nothing-near", "goals", text)]
 
 
 def _place(grid: Grid, part: str, index: int) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
 """One call for every method: search within limits, check by finite elements, correct, go on.
 
-One time limit covers searching and checking; it begins once the engine is ready. A search uses part
+One time limit covers getting ready, searching and checking. A search uses part
 of its time; then its best design is checked by finite elements. Where they differ, the targets are
 moved by the difference and the search goes on from there, as often as the limits allow. A search
 that found a design returns it, whatever a check, an interrupt or a token does afterwards.
@@ -13,13 +13,14 @@ from time import monotonic
 
 import numpy as np
 
+from simulearn.display import Displayed
 from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import Past, Step
 from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, drawing
-from simulearn.inverse.reach import out_of_reach
+from simulearn.inverse.reach import not_near, out_of_reach
 from simulearn.inverse.scoring import places
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Task
@@ -40,12 +41,13 @@ Progress = Callable[[Step], None]  # called with each step, as soon as it is don
 GOOD = 0.1  # mm, about the engine's own error; a search that came so far has done its work
 SEARCHING = 0.75  # of the time left goes into a search that corrections may follow
 WORTH = 0.1  # of the error, that a correction must promise
-GRACE = 10.0  # s beyond the deadline that the first check of a search may take
+GRACE = 10.0  # s beyond the deadline that the first check of a search may take, at most
+GRACE_SHARE = 0.25  # of the time, likewise
 CHECKING = 0.25  # s for each beam that a check takes, until one has been measured
 
 
 @dataclass(frozen=True, eq=False)
-class SearchResult:
+class SearchResult(Displayed):
     """The result of a search.
 
     Attributes:
@@ -148,7 +150,7 @@ class Search:
         self.method = method(task.method)
         self.steps, self.checks = list(before.steps), list(before.checks)
         self._progress = progress
-        self._begun = np.inf
+        self._asked, self._begun = monotonic(), np.inf
         self._checking = CHECKING * len(task.grid["beams"])
 
     def run(self) -> SearchResult:
@@ -183,7 +185,7 @@ class Search:
             tuple(self.checks),
             self.seconds,
             interrupted,
-            tuple(warnings),
+            (*warnings, *([] if interrupted else not_near(start, error, warnings))),
         )
 
     @property
@@ -207,7 +209,10 @@ class Search:
         warm("fea")
         if isinstance(self.engine, Learned):
             next(self.method(self._problem(space, goals, np.inf), start), None)
-        self._begun = monotonic() - (before.seconds if before else 0.0)
+        # Reading the model and getting ready count, but the first time on a machine, which takes
+        # longer than many searches, no more than half of the time.
+        ready = min(monotonic() - self._asked, self.task.limits.seconds / 2)
+        self._begun = monotonic() - ready - (before.seconds if before else 0.0)
         if before is None:
             self._note(space, start, 0, 1, 0, "the design to begin with")
         return start
@@ -267,7 +272,7 @@ class Search:
             if one.error_fea_mm is not None and _same(one.grid, grid):
                 return one
         begun = monotonic()
-        grace = 0.0 if self.checks else GRACE
+        grace = 0.0 if self.checks else min(GRACE, GRACE_SHARE * self.task.limits.seconds)
         until = _Until(self.cancel, self._begun + self.task.limits.seconds + grace)
         latest = check(grid, now.points, goals, self.engine, self.cancel, until, phase)
         self._checking = monotonic() - begun

@@ -6,20 +6,27 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
-from simulearn.grid.arrays import shown
+from simulearn.grid.arrays import shown, whole
 from simulearn.grid.cleaning import removals
 from simulearn.inverse.goals import Goals, Vertex
 
 SCHEMA = "simulearn.task/1"
 
-Index = Annotated[int, Field(ge=0, lt=2**31)]
+Index = Annotated[int, BeforeValidator(whole), Field(ge=0, lt=2**31)]
 Pair = Annotated[list[Index], Field(min_length=2, max_length=2)]
 Positive = Annotated[float, Field(gt=0)]
+
+
+def _plain_vertex(words: Any) -> Any:
+    """Return a vertex as it is kept: "center" as "centre", 2.0 as 2."""
+    if not isinstance(words, list):
+        return words
+    return ["centre" if word == "center" else whole(word) for word in words]
 
 
 class _Part(BaseModel):
@@ -35,7 +42,7 @@ class Goal(_Part):
         weight: not negative.
     """
 
-    vertex: list[Any]
+    vertex: Annotated[list[Any], BeforeValidator(_plain_vertex)]
     target: Annotated[list[float], Field(min_length=3, max_length=3)]
     weight: Annotated[float, Field(ge=0)] = 1.0
 
@@ -78,7 +85,8 @@ class Limits(_Part):
 
     Attributes:
         iterations: of the method.
-        seconds: of searching and checking; only the first check may take up to ten more.
+        seconds: of getting ready, searching and checking; only the first check may take up to a
+            quarter more, and compiling once on a machine longer than half of it.
         corrections: how often to go on from targets corrected by FEA.
     """
 

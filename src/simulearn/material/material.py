@@ -243,14 +243,17 @@ def load_material(name: str | Path) -> Material:
     """
     if not is_name(str(name)):
         return read_material(name)
-    if str(name) not in names():
+    path = HERE / f"{name}.toml"
+    try:
+        found = path.stat()
+    except (OSError, ValueError):  # no such file, or no name that a file may have
         known = ", ".join(names())
         raise InputError(
             f'material "{name}" is not known; known are {known}, or give a .toml file',
             code="material-unknown",
             where="material",
-        )
-    return read_material(HERE / f"{name}.toml")
+        ) from None
+    return _shipped(path, found.st_mtime_ns, found.st_size)
 
 
 def read_material(path: str | Path) -> Material:
@@ -260,6 +263,12 @@ def read_material(path: str | Path) -> Material:
         InputError: the file cannot be read or is not a valid material system.
     """
     return _parsed(read_text(path), str(path))
+
+
+@lru_cache(maxsize=16)
+def _shipped(path: Path, changed: int, size: int) -> Material:
+    """Return a material that comes with SimuLearn; a file that has not changed is read once."""
+    return read_material(path)
 
 
 @lru_cache(maxsize=64)

@@ -10,7 +10,7 @@ from simulearn.grid import Grid, Validation
 from simulearn.grid import validate as validate_for
 from simulearn.material import Material, load_material
 from simulearn.simulate.engines import engine as engine_of
-from simulearn.simulate.result import Outcome, Result, one
+from simulearn.simulate.result import Outcome, Outcomes, Result, one
 from simulearn.simulate.simulator import Progress, Simulator
 
 
@@ -71,7 +71,7 @@ def simulate(
     simulator = engine_of(engine, model) if isinstance(engine, str) else engine
     if isinstance(grids, Grid):
         return one(simulator.simulate([grids], progress, cancel)[0])
-    return simulator.simulate(list(grids), progress, cancel)
+    return Outcomes(simulator.simulate(list(grids), progress, cancel))
 
 
 @cache

@@ -18,6 +18,7 @@ from simulearn.errors import Cancel, ComputationError, InputError, stop_if
 from simulearn.files import cores
 from simulearn.grid import Grid, make
 from simulearn.simulate.checked import Checked, check_all
+from simulearn.simulate.passing import passing
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result, results
 from simulearn.simulate.simulator import Progress, Simulator
 
@@ -102,6 +103,8 @@ class Engine:
             trial = self.solver(one.grid, one.material, progress=progress, cancel=cancel)
         except (ComputationError, InputError) as error:
             return Failure.of(one.given, error, _likely(one))
+        thickness = one.material.section.thickness
+        (through,) = passing(np.asarray(trial.beams)[-1:], one.grid.beams, thickness)
         return Result(
             grid=one.grid,
             engine=self.name,
@@ -112,7 +115,7 @@ class Engine:
             material=one.material.identity,
             stable=trial.stable,
             snaps=trial.snaps,
-            warnings=(*one.warnings, *trial.warnings),
+            warnings=(*one.warnings, *trial.warnings, *through),
             record=dict(trial.record),
             solid=trial.solid,
             displacements=np.asarray(trial.displacements),

@@ -17,6 +17,7 @@ from simulearn.material import Material
 from simulearn.schedule import FRAMES, Snap
 from simulearn.simulate.checked import Checked, check_all
 from simulearn.simulate.engines import in_order
+from simulearn.simulate.passing import passing
 from simulearn.simulate.result import Failure, Outcome, Result
 from simulearn.simulate.simulator import Progress
 
@@ -107,10 +108,14 @@ class Learned:
             designs_of([one.grid for _, one in batch], self.bundle.card.material)
         )
         seconds = (time.perf_counter() - begun) / len(batch)
+        thickness = self.material.section.thickness
+        through = passing(frames.sections[:, -1], batch[0][1].grid.beams, thickness)
         for t, (k, one) in enumerate(batch):
-            yield k, self._outcome(one, frames, t, seconds)
+            yield k, self._outcome(one, frames, t, seconds, through[t])
 
-    def _outcome(self, one: Checked, frames: Frames, t: int, seconds: float) -> Outcome:
+    def _outcome(
+        self, one: Checked, frames: Frames, t: int, seconds: float, through: tuple[Message, ...]
+    ) -> Outcome:
         joints, sections = frames.joints[t], frames.sections[t]
         if not (frames.converged[t] and np.isfinite(joints).all() and np.isfinite(sections).all()):
             message = f'the model "{self.bundle.card.name}" has no answer for this grid'
@@ -135,6 +140,8 @@ class Learned:
                 *self._unlike(one.grid),
                 *_left_balance(frames, t),
                 *_after_snap(snaps),
+                *_beyond(bound, one.grid),
+                *through,
             ),
             record={"kind": self.bundle.card.kind},
         )
@@ -197,6 +204,17 @@ def _after_snap(snaps: Sequence[Snap]) -> Iterator[Message]:
             "grid",
             "the grid snaps, and how far off the shape after a snap may be is not estimated; "
             "simulate it by finite elements",
+        )
+
+
+def _beyond(bound: float | None, grid: Grid) -> Iterator[Message]:
+    """Yield a warning where the estimated error is so large that the shape says nothing."""
+    if bound is not None and bound > grid.dimension / 2:
+        yield Message(
+            "bound-wide",
+            "grid",
+            "the grid is so unlike those that the model has learnt that its shape cannot be "
+            "trusted; simulate it by finite elements",
         )
 
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.display import Displayed
 from simulearn.errors import ComputationError, InputError, Message
 from simulearn.grid import Grid
 from simulearn.material import Identity
@@ -21,11 +22,11 @@ from simulearn.schedule import FRAMES, Snap
 if TYPE_CHECKING:  # so that reading a result does not load a solver
     from simulearn.fea import Solid
 
-__all__ = ["FRAMES", "Failure", "Outcome", "Result", "one", "results"]
+__all__ = ["FRAMES", "Failure", "Outcome", "Outcomes", "Result", "one", "results"]
 
 
 @dataclass(frozen=True, eq=False)
-class Result:
+class Result(Displayed):
     """The twelve frames of a morphing grid; mm, MPa, +z up.
 
     Attributes:
@@ -73,7 +74,7 @@ class Result:
 
 
 @dataclass(frozen=True, eq=False)
-class Failure:
+class Failure(Displayed):
     """Why a design has no result.
 
     Attributes:
@@ -111,6 +112,14 @@ class Failure:
 
 
 Outcome = Result | Failure
+
+
+class Outcomes(list[Outcome], Displayed):
+    """The outcomes of several designs, in their order, shown as a table."""
+
+    def __repr__(self) -> str:
+        text: str = self._repr_mimebundle_(include=["text/plain"])["text/plain"]
+        return text
 
 
 def one(outcome: Outcome) -> Result:

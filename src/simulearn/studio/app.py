@@ -10,13 +10,17 @@ from fastapi import FastAPI, Request, Response
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from simulearn.studio import frames
+from simulearn.interop import frames
 from simulearn.studio.bodies import json_response
 from simulearn.studio.documents import Documents
+from simulearn.studio.hops import routes as hops
+from simulearn.studio.hops.searches import Searches
+from simulearn.studio.hops.words import SOLVING, InWordsOfHops
 from simulearn.studio.jobs import Jobs
 from simulearn.studio.openapi import describe
 from simulearn.studio.page import serve_page
 from simulearn.studio.problems import LastResort, answer_errors
+from simulearn.studio.rhino import routes as rhino
 from simulearn.studio.routes import about, designs, documents, files, jobs, prints
 from simulearn.studio.safety import BodyLimit, OwnOriginOnly, SecurityHeaders
 from simulearn.studio.settings import Settings
@@ -30,6 +34,8 @@ ROUTERS = (
     prints.router,
     files.router,
     documents.router,
+    hops.router,
+    rhino.router,
 )
 ROOM = 2**14  # bytes of text that are worth compressing
 EFFORT = 4  # of compressing; more takes longer than it saves
@@ -50,6 +56,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.settings = settings
     app.state.simulations = Simulations(settings)
     app.state.jobs = Jobs(settings)
+    app.state.searches = Searches(app.state.jobs)
     app.state.documents = Documents(settings)
     app.state.turns = Turns("file", 2, settings.waiting)
     app.state.exports = Turns("export", 1, settings.waiting, settings.export_seconds)
@@ -60,9 +67,11 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     answer_errors(app)
     # From the inside out.
     app.add_middleware(_Compression)
-    app.add_middleware(BodyLimit, settings.body_bytes, {"/api/open": settings.file_bytes})
+    larger = dict.fromkeys(("/api/open", *SOLVING), settings.file_bytes)
+    app.add_middleware(BodyLimit, settings.body_bytes, larger)
     app.add_middleware(OwnOriginOnly, settings.hosts)
     app.add_middleware(LastResort)
+    app.add_middleware(InWordsOfHops)
     app.add_middleware(SecurityHeaders)
     return app
 

@@ -13,6 +13,7 @@ from simulearn.simulate import Result
 # Matplotlib is made for one thread; others wait for their turn.
 _drawing = threading.Lock()
 SEVERAL = (".pvd",)  # formats of more than one file
+NAMED = (*SEVERAL, ".html")  # formats that say their own name, which then is what the person wants
 TYPES = {
     ".json": "application/json",
     ".png": "image/png",
@@ -20,6 +21,7 @@ TYPES = {
     ".svg": "image/svg+xml",
     ".csv": "text/csv",
     ".gif": "image/gif",
+    ".html": "text/html; charset=utf-8",
     ".mp4": "video/mp4",
     ".webm": "video/webm",
     ".glb": "model/gltf-binary",
@@ -63,8 +65,7 @@ def exported(
     """
     with TemporaryDirectory(prefix="simulearn-") as folder:
         several = ending in SEVERAL
-        # Where the files name one another, their names are what the person wants.
-        path = Path(folder) / f"{stem if several else 'result'}{ending}"
+        path = Path(folder) / f"{stem if ending in NAMED else 'result'}{ending}"
         with _drawing:
             outputs.write(result, path, cancel)
         data = _zipped(Path(folder)) if several else path.read_bytes()

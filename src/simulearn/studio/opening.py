@@ -1,10 +1,18 @@
-"""Files that a person opens: a grid, a task, a result or a document, known by what they hold."""
+"""Files that a person opens: grids, tasks, results, pages, documents, and drawings of others.
+
+All are known by what they hold, not by their names.
+"""
 
 import codecs
 from dataclasses import asdict
+from functools import partial
 from pathlib import PurePath, PureWindowsPath
 from typing import Any
 
+from simulearn.drawings.importing import Imported, Options, imported
+from simulearn.drawings.pages import SCHEMA as PAGE
+from simulearn.drawings.pages import page_contents
+from simulearn.drawings.units import UnitError
 from simulearn.errors import InputError, Message
 from simulearn.files import parse_json
 from simulearn.grid import grid_from_dict, grid_to_dict
@@ -23,81 +31,95 @@ MARKS = {  # of text that is not UTF-8 (or marked as such)
     codecs.BOM_UTF16_LE: "utf-16",
     codecs.BOM_UTF16_BE: "utf-16",
 }
-OTHERS = (  # how files of other kinds begin, and what they are
-    (b"PK", "a ZIP archive (such as an .npz file)"),
-    (b"\x89PNG", "a picture"),
-    (b"\xff\xd8\xff", "a picture"),
-    (b"GIF8", "a picture"),
-    (b"%PDF", "a PDF"),
-    (b"glTF", "a surface (.glb)"),
-    (b"solid ", "a surface (.stl)"),
-    (b";", "a print (.gcode)"),
-    (b"<", "XML (such as .svg or .vtu)"),
-    (b"\x1f\x8b", "compressed"),
-)
-OPENED = "the studio opens grids, tasks, results and documents in JSON"
+LOOK = 2**12  # bytes in which JSON begins
+OWN = "simulearn."  # the beginning of our schemas
+OPENED = "the studio opens grids, tasks, results, documents and drawings"
+# What is left out of a design's name.
+ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj", ".html")
 # What a search begins from may not have; it is no error in a drawing.
 REMOVABLE = ("dangling-beam", "unused-joint")
 
 
-def opened(data: bytes, name: str) -> dict[str, Any]:
+def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, Any]:
     """Return the parts of a document that a file holds.
 
     Args:
         data: contents of the file.
         name: of the file; it names a design that has no name of its own.
+        options: how a drawing is to be read.
 
     Returns:
-        kind (grid, task, result or document), name, grid, goals, printer (None if the file names
-        none), and messages about what was not taken over.
+        kind (grid, task, result, document or drawing), name, grid, goals, printer (None if the file
+        names none), messages about what was not taken over, and what is to be told of a drawing:
+        format, unit, layers and mends (None for other files).
 
     Raises:
         InputError: the file holds nothing that can be opened; the message says what and where.
+        UnitError: the unit of a drawing is not known.
     """
     stem = _stem(name)
+    told = partial("{}: {}".format, stem or "the file")
     try:
-        parts = _parts(parse_json(_text(data)))
+        parts = _parts(data, name, options)
+    except UnitError as error:
+        raise UnitError(told(error), error.guess, error.size) from error
     except InputError as error:
-        file = stem or "the file"
-        raise InputError(f"{file}: {error}", error.code, error.where, error.messages) from error
+        raise InputError(told(error), error.code, error.where, error.messages) from error
     check_document({"schema": DOCUMENT, "grid": parts["grid"], "goals": parts["goals"]})
     messages = [asdict(message) for message in parts["messages"]]
     return {**parts, "name": parts["name"] or stem, "messages": messages}
 
 
-def _text(data: bytes) -> str:
-    """Return the text of a file."""
+def _parts(data: bytes, name: str, options: Options | None) -> dict[str, Any]:
+    """Return what a file holds: what is ours by its schema, else a drawing."""
+    parts: dict[str, Any] = {
+        "name": "",
+        "goals": [],
+        "printer": None,
+        "messages": [],
+        "drawing": None,
+    }
     if not data.strip():
         raise InputError(f"is empty; {OPENED}", "empty", "file")
+    text = page_contents(data) or _json(data)
+    ours = None if text is None else _ours(parse_json(text))
+    return parts | (_of_drawing(imported(data, name, options)) if ours is None else ours)
+
+
+def _json(data: bytes) -> str | None:
+    """Return the text of a file that begins as JSON does; None for others.
+
+    Raises:
+        InputError: it is no text, although it begins so.
+    """
     encoding = next((e for mark, e in MARKS.items() if data.startswith(mark)), "utf-8")
-    for start, what in OTHERS:
-        if data.startswith(start):
-            raise InputError(f"is {what}; {OPENED}", "file-kind", "file")
     try:
-        return data.decode(encoding)
+        start = data[:LOOK].decode(encoding, errors="replace").lstrip()
+        return data.decode(encoding) if start.startswith(("{", "[")) else None
     except UnicodeDecodeError as error:
-        text = f"is not text in UTF-8 (byte {error.start}); {OPENED}"
+        text = f"is not text in UTF-8 (byte {error.start})"
         raise InputError(text, "file-kind", f"byte {error.start}") from error
 
 
-def _parts(data: Any) -> dict[str, Any]:
-    """Return what a file's JSON holds, by its schema."""
+def _ours(data: Any) -> dict[str, Any] | None:
+    """Return what JSON of ours holds, by its schema; None for that of other programs."""
     schema = data.get("schema") if isinstance(data, dict) else None
-    kind = schema.partition("/")[0] if isinstance(schema, str) else None
+    kind = schema.partition("/")[0] if isinstance(schema, str) else ""
     readers = {of.partition("/")[0]: (of, read) for of, read in READERS.items()}
-    if kind not in readers:
-        if isinstance(data, dict) and {"joints", "beams"} <= data.keys():
-            return _of_grid(data)  # whose reader says what is wrong
-        other = f'has the schema "{schema}"' if isinstance(schema, str) else "has no schema"
+    if kind in readers:
+        known, read = readers[kind]
+        if schema != known:
+            text = f'schema is "{schema}"; this version reads "{known}"'
+            raise InputError(text, "file-version", "schema")
+        return read(data)
+    if kind.startswith(OWN):
+        other = f'has the schema "{schema}"'
         if schema == FAILURE:
             other = "says why a design has no result; it holds no design"
         raise InputError(f"{other}; {OPENED}", "file-kind", "schema")
-    known, read = readers[kind]
-    if schema != known:
-        text = f'schema is "{schema}"; this version reads "{known}"'
-        raise InputError(text, "file-version", "schema")
-    parts: dict[str, Any] = {"name": "", "goals": [], "printer": None, "messages": []}
-    return parts | read(data)
+    if isinstance(data, dict) and {"joints", "beams"} <= data.keys():
+        return _of_grid(data)  # whose reader says what is wrong
+    return None
 
 
 def _of_grid(data: Any) -> dict[str, Any]:
@@ -109,6 +131,12 @@ def _of_result(data: Any) -> dict[str, Any]:
     text = "the file is a result; its design was opened and is simulated again"
     message = Message("opened-result", "file", text)
     return {"kind": "result", "grid": grid_to_dict(grid), "messages": [message]}
+
+
+def _of_page(data: Any) -> dict[str, Any]:
+    text = "the file is a page that plays a result; its design was opened and is simulated again"
+    grid = grid_to_dict(grid_from_dict(data.get("grid")))
+    return {"kind": "result", "grid": grid, "messages": [Message("opened-result", "file", text)]}
 
 
 def _of_task(data: Any) -> dict[str, Any]:
@@ -127,6 +155,21 @@ def _of_task(data: Any) -> dict[str, Any]:
     return {"kind": "task", "grid": grid, "goals": goals, "messages": messages}
 
 
+def _of_drawing(found: Imported) -> dict[str, Any]:
+    drawing = {
+        "format": found.format,
+        "unit": asdict(found.unit),
+        "layers": [asdict(layer) for layer in found.layers],
+        "mends": [asdict(mend) for mend in found.mends],
+    }
+    return {
+        "kind": "drawing",
+        "grid": grid_to_dict(found.grid),
+        "messages": found.messages,
+        "drawing": drawing,
+    }
+
+
 def _of_document(data: Any) -> dict[str, Any]:
     check_document(data)
     optional = {key: data[key] for key in ("name", "printer") if data.get(key)}
@@ -138,11 +181,18 @@ def _of_document(data: Any) -> dict[str, Any]:
     }
 
 
-READERS = {GRID: _of_grid, TASK: _of_task, RESULT: _of_result, DOCUMENT: _of_document}
+READERS = {
+    GRID: _of_grid,
+    TASK: _of_task,
+    RESULT: _of_result,
+    PAGE: _of_page,
+    DOCUMENT: _of_document,
+}
 
 
 def _stem(name: str) -> str:
     """Return the name of a file without folders and ending, as a person would call it."""
     base = PureWindowsPath(PurePath(name).name).name
-    stem = base[:-5] if base.lower().endswith(".json") else base
+    ending = PurePath(base).suffix
+    stem = base.removesuffix(ending) if ending.lower() in ENDINGS else base
     return " ".join("".join(c if c.isprintable() else " " for c in stem).split())[:200]

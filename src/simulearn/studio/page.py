@@ -8,7 +8,7 @@ from fastapi import FastAPI, Request, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Scope
 
-from simulearn.studio.libraries import libraries
+from simulearn.interop.libraries import libraries
 
 PAGE = Path(__file__).parent / "page"
 NEWEST = "no-cache"  # kept, but asked about each time: a 304 takes a millisecond

@@ -9,10 +9,12 @@ Neither file can run code.
 
 import hashlib
 import json
+import re
 import shutil
 import subprocess
 import tempfile
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -38,6 +40,9 @@ if TYPE_CHECKING:  # reading a bundle needs none of it
 SCHEMA = "simulearn.model/1"
 BUNDLES = Path(__file__).parents[1] / "bundles"
 DEFAULTS = ("equilibrium", "paper")  # the first of them that is there is what `default` means
+
+POINTER = b"version https://git-lfs.github.com/spec/"
+WEIGHTS = ("model-weights", "model")  # code and place of what is wrong with them
 
 UNITS = {"length": "mm", "stress": "MPa", "angle": "rad", "ratio": "signed, + top"}
 
@@ -141,6 +146,36 @@ class Bundle:
         text = json.dumps(contents, sort_keys=True, separators=(",", ":"))
         return Identity(name=card.name, digest=hashlib.sha256(text.encode()).hexdigest())
 
+    def _content(self) -> bytes:
+        """Return the file of the weights, known to be the card's."""
+        file = self.path / "weights.safetensors"
+        try:
+            content = file.read_bytes()
+        except OSError as error:
+            raise InputError(f"{file}: cannot be read ({error.strerror})", *WEIGHTS) from error
+        if content.startswith(POINTER):
+            raise InputError(
+                f"{file}: is a Git LFS pointer, not the weights themselves; fetch them with "
+                "`git lfs pull`, or download the file itself",
+                *WEIGHTS,
+            )
+        digest = hashlib.sha256(content).hexdigest()
+        if digest != self.card.weights:
+            raise InputError(
+                f"{file}: does not belong to its model.json, or is damaged (SHA-256 "
+                f"{digest[:12]}..., not {self.card.weights[:12]}...)",
+                *WEIGHTS,
+            )
+        return content
+
+    def check(self) -> None:
+        """Make sure that the weights are there and whole, which is quick; no model is built.
+
+        Raises:
+            InputError: they are missing, damaged, or those of another card.
+        """
+        self._content()
+
     @cached_property
     def model(self) -> Model:
         """The model.
@@ -148,21 +183,11 @@ class Bundle:
         Raises:
             InputError: the weights are missing, damaged, or do not fit the card.
         """
-        file = self.path / "weights.safetensors"
         try:
-            content = file.read_bytes()
-        except OSError as error:
-            raise InputError(f"{file}: cannot be read ({error.strerror})") from error
-        digest = hashlib.sha256(content).hexdigest()
-        if digest != self.card.weights:
-            raise InputError(
-                f"{file}: does not belong to its model.json, or is damaged (SHA-256 "
-                f"{digest[:12]}…, not {self.card.weights[:12]}…)"
-            )
-        try:
-            arrays = load(content)
+            arrays = load(self._content())
         except SafetensorError as error:
-            raise InputError(f"{file}: is not a safetensors file: {error}") from error
+            file = self.path / "weights.safetensors"
+            raise InputError(f"{file}: is not a safetensors file: {error}", *WEIGHTS) from error
         try:
             return builder(self.card.kind)(self.card.architecture, arrays, self.card.material)
         except InputError as error:
@@ -201,12 +226,31 @@ def bundle_of(name: Path | str) -> Bundle:
         )
     try:
         card = Card.model_validate(data)
+        builder(card.kind)  # an unknown kind is refused now
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"]))
-        raise InputError(f"{file}: {key}: {first['msg']}") from error
-    builder(card.kind)  # an unknown kind is refused now
+        what = "is unknown" if first["type"] == "extra_forbidden" else first["msg"]
+        raise InputError(f"{file}: {key}: {what}{_of_version(data)}", "model-card") from error
+    except InputError as error:
+        raise InputError(f"{file}: {error}{_of_version(data)}", "model-card") from error
     return Bundle(path, card)
+
+
+def _of_version(data: dict[str, Any]) -> str:
+    """Return that a card was written by another version, where that explains what is wrong."""
+    wrote = str(data.get("version", ""))[:40]
+    if not wrote or wrote == __version__:
+        return ""
+    if _numbers(wrote) > _numbers(__version__):
+        advice = "update it to read newer models"
+    else:
+        advice = "train the model again"
+    return f" (the model is of SimuLearn {wrote}, this is {__version__}: {advice})"
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in re.findall(r"\d+", version)[:3])
 
 
 def save_bundle(
@@ -262,7 +306,8 @@ def save_bundle(
     try:
         (temporary / "weights.safetensors").write_bytes(content)
         _write_card(temporary / "model.json", card)
-        temporary.chmod(0o755)
+        with suppress(OSError):  # some mounts know no access
+            temporary.chmod(0o755)
         if path.exists():
             path.rename(old := temporary.with_name(temporary.name + "-old"))
         temporary.rename(path)

@@ -31,6 +31,11 @@ export const state = shallowReactive({
   pickVertex: null, // function: the shape view calls it with the vertex that is picked next
   suggestions: null, // { document, state, error, cards, problem }: single changes; see service/suggestions.js
   search: null, // { document, state, steps, result, ... }: the automatic search; see service/search.js
+  drawingShown: false, // whether the panel is open that tells how the document came out of a drawing
+  places: null, // { points: [[x, y]], current }: where the plan shows what a panel speaks of
+  placed: 0, // rises when another design takes the place of the shown one: the views show all of it
+  opening: null, // name of the file that is being read
+  dropping: false, // whether a file is held over the page
   notices: [], // [{ id, text, action: { label, run } | null }]: short confirmations
 });
 

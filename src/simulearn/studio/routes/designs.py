@@ -9,11 +9,11 @@ from fastapi import APIRouter, Request, Response
 
 from simulearn.errors import Cancel, InputError, Message
 from simulearn.grid import Grid, Validation, grid_from_dict, grid_to_dict, validate
+from simulearn.interop import frames
 from simulearn.inverse import Suggestion, rank, task_from_dict
 from simulearn.material import load_material
 from simulearn.simulate import Failure, Outcome, outcome_to_dict
 from simulearn.simulate.engines import in_order
-from simulearn.studio import frames
 from simulearn.studio.answers import RankAnswer, SimulateAnswer, ValidationAnswer
 from simulearn.studio.bodies import GridBody, JsonRoute, SimulateBody, TaskBody, json_response
 from simulearn.studio.problems import Problem

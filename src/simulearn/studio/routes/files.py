@@ -1,23 +1,30 @@
 """Files: what a person opens, and a result in the format that they want."""
 
+from dataclasses import asdict
 from functools import partial
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from simulearn.drawings.importing import Options
+from simulearn.drawings.mending import MENDS
+from simulearn.drawings.units import LENGTHS, UnitError
 from simulearn.errors import Cancel
 from simulearn.grid import Grid, grid_from_dict
+from simulearn.grid.structure import FARTHEST
 from simulearn.simulate import Result, one
 from simulearn.studio.bodies import GridBody, JsonRoute, json_response
 from simulearn.studio.documentfile import DocumentGoal, Drawing
 from simulearn.studio.downloads import attachment, safe_stem
 from simulearn.studio.exports import check_format, exported
 from simulearn.studio.opening import opened
-from simulearn.studio.problems import MessageBody
+from simulearn.studio.problems import MessageBody, Problem
 from simulearn.studio.routes.designs import BUSY, check_fea, check_size
 from simulearn.studio.simulations import Simulations, engine_of
 from simulearn.studio.turns import Turns
+
+Place = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 router = APIRouter(route_class=JsonRoute, tags=["files"])
 
@@ -35,15 +42,81 @@ ANY_FILE = {
 }
 
 
+class Reading(BaseModel):
+    """The name of a file that is opened, and how it is to be read where it is a drawing."""
+
+    name: Annotated[str, Field(description="of the file", max_length=1000)] = ""
+    unit: Annotated[
+        str | None,
+        Field(
+            description="goes before what the file says", json_schema_extra={"enum": list(LENGTHS)}
+        ),
+    ] = None
+    width: Annotated[float | None, Field(description="of all, mm", gt=0, le=FARTHEST)] = None
+    layers: Annotated[list[str], Field(description="names or patterns", max_length=1000)] = []
+    flatten: Annotated[
+        float | None, Field(description="mm, of chords from curves", gt=0, le=FARTHEST)
+    ] = None
+    actuators: Literal["auto", "layers", "colours", "none"] = "auto"
+    tolerance: Annotated[float, Field(description="mm", gt=0, le=FARTHEST)] = 1.0
+    without: Annotated[
+        list[Literal[MENDS]],  # type: ignore[valid-type]
+        Field(description="mends that are not done", max_length=len(MENDS)),
+    ] = []
+
+    def options(self) -> Options:
+        """Return how a drawing is to be read."""
+        chosen = self.model_dump(exclude={"name"})
+        layers, without = tuple(self.layers), frozenset(self.without)
+        return Options(**chosen | {"layers": layers, "without": without})
+
+
+class DrawingUnit(BaseModel):
+    """The unit of a drawing: its length (mm), its name and what says so."""
+
+    mm: float
+    name: str
+    source: str
+
+
+class DrawingLayer(BaseModel):
+    """A layer: whether it was read, and the ratio of the actuator that it stands for."""
+
+    name: str
+    colour: str | None
+    lines: int
+    taken: bool
+    ratio: float | None
+
+
+class DrawingMend(BaseModel):
+    """Something that was done to a drawing so that it became a grid, and where (mm)."""
+
+    code: str
+    count: int
+    message: str
+    places: list[Place]
+
+
+class DrawingFacts(BaseModel):
+    """What is to be told of a drawing of another program."""
+
+    format: str
+    unit: DrawingUnit
+    layers: list[DrawingLayer]
+    mends: list[DrawingMend]
+
+
 class OpenedFile(BaseModel):
     """The parts of a document that a file holds, and what was not taken over."""
 
-    kind: Literal["grid", "task", "result", "document"]
+    kind: Literal["grid", "task", "result", "document", "drawing"]
     name: str
     grid: Drawing
     goals: list[DocumentGoal]
     printer: str | None
     messages: list[MessageBody]
+    drawing: Annotated[DrawingFacts | None, Field(description="of a drawing only")]
 
 
 class ExportBody(BaseModel):
@@ -58,14 +131,24 @@ class ExportBody(BaseModel):
 
 
 @router.post("/api/open", response_model=OpenedFile, responses=BUSY, openapi_extra=ANY_FILE)
-async def open_(
-    request: Request,
-    name: Annotated[str, Query(description="of the file", max_length=1000)] = "",
-) -> Response:
-    """Read a grid, a task, a result or a document, known by its contents."""
+async def open_(request: Request, reading: Annotated[Reading, Query()]) -> Response:
+    """Read a grid, a task, a result, a document or a drawing, known by its contents.
+
+    A drawing whose unit is not known, or makes no sense, is refused with the code `unit-unknown`.
+    The problem then has two more members: `size`, width and height in units of the file, and
+    `guess`, the likely unit or null.
+    """
     turns: Turns = request.app.state.turns
     data = await request.body()
-    return await turns.run(request, lambda _: json_response(opened(data, name)))
+    return await turns.run(request, lambda _: _opened(data, reading))
+
+
+def _opened(data: bytes, reading: Reading) -> Response:
+    try:
+        return json_response(opened(data, reading.name, reading.options()))
+    except UnitError as error:
+        more = {"guess": error.guess and asdict(error.guess), "size": list(error.size)}
+        raise Problem(422, error.code, str(error), error.where, more=more) from error
 
 
 @router.post("/api/export", response_class=Response, responses=BUSY | FILE)

@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field
 from simulearn.errors import InputError
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.gridfile import GridFile
+from simulearn.interop import frames
 from simulearn.inverse import SearchResult, Step, Task, optimize, search_figures, task_from_dict
 from simulearn.inverse.search import method
 from simulearn.inverse.space import Space
 from simulearn.simulate import Failure, Outcome, Result, outcome_to_dict
-from simulearn.studio import frames
 from simulearn.studio.bodies import GridBody, JsonRoute, TaskBody, json_response
 from simulearn.studio.jobs import Answer, Job, Jobs
 from simulearn.studio.problems import Problem, ProblemBody
@@ -85,8 +85,8 @@ class JobAnswer(BaseModel):
 def optimize_(task: TaskBody, request: Request) -> Response:
     """Begin a search for a design that comes where it is wanted, as `simulearn optimize`."""
     state = request.app.state
-    wanted = _checked(task_from_dict(task), state.settings)
-    return _begun(state.jobs.start("optimize", partial(_search, wanted, state.simulations)))
+    wanted = checked(task_from_dict(task), state.settings)
+    return _begun(state.jobs.start("optimize", partial(search, wanted, state.simulations)))
 
 
 @router.post("/api/fea", status_code=202, response_model=JobBegun, responses=BUSY)
@@ -167,7 +167,7 @@ def _described(job: Job, since: int) -> Response:
     return Response(content, media_type="application/json", headers={"Cache-Control": "no-store"})
 
 
-def _checked(task: Task, settings: Settings) -> Task:
+def checked(task: Task, settings: Settings) -> Task:
     """Return a task that can be searched for here.
 
     Raises:
@@ -187,7 +187,7 @@ def _checked(task: Task, settings: Settings) -> Task:
     return task
 
 
-def _search(task: Task, simulations: Simulations, job: Job) -> Answer:
+def search(task: Task, simulations: Simulations, job: Job) -> Answer:
     """Search, and describe what was found."""
     start, limits = task.start, task.limits
 

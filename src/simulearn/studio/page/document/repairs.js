@@ -18,6 +18,7 @@ const REPAIRS = {
   "joints-too-close": close,
   "joint-outline": untangle,
   overlap: join,
+  "joint-missing": join,
   "fixed-removed": fixOther,
   disconnected: joinOrKeepLargest,
   "dangling-beam": joinOrRemove,

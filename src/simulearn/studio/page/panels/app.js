@@ -4,7 +4,7 @@ import { h, watchEffect } from "/libraries/vue.js";
 import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { Bar } from "./bar.js";
-import { Dialogs, Notices } from "./dialogs.js";
+import { Dialogs, Drop, Notices } from "./dialogs.js";
 import { Side } from "./side.js";
 import { Status } from "./status.js";
 import { Views } from "./views.js";
@@ -22,7 +22,7 @@ export const App = {
       globalThis.document.title = name ? `${name} · SimuLearn` : t("common.studio");
     });
     return () => (state.started
-      ? h("div", { class: "page" }, [h(Bar), h(Views), h(Side), h(Status), h(Dialogs), h(Notices)])
+      ? h("div", { class: "page" }, [h(Bar), h(Views), h(Side), h(Status), h(Dialogs), h(Notices), h(Drop)])
       : starting());
   },
 };

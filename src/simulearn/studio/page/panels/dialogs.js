@@ -6,9 +6,11 @@ import { t } from "../text/text.js";
 import { keepMine, takeOther } from "../service/saving.js";
 import { button, iconButton } from "./controls.js";
 import { ExportDialog } from "./export.js";
+import { icon } from "./icons.js";
 import { HelpDialog } from "./help.js";
 import { LibraryDialog } from "./library.js";
 import { Dialog, close } from "./dialog.js";
+import { CurvesDialog, UnitDialog } from "./unit.js";
 
 const SHOWN = 5000; // ms that a confirmation stays
 const OFFERED = 12_000; // ms where something can be done about it
@@ -64,7 +66,7 @@ const LinkDialog = {
 
 const DIALOGS = {
   message: MessageDialog, conflict: ConflictDialog, link: LinkDialog,
-  library: LibraryDialog, export: ExportDialog, help: HelpDialog,
+  library: LibraryDialog, export: ExportDialog, help: HelpDialog, unit: UnitDialog, curves: CurvesDialog,
 };
 
 export const Dialogs = {
@@ -106,7 +108,20 @@ const Notice = {
   },
 };
 
+/** It floats, and goes while people work: what they aim at must not move then. */
+const doing = (key, text) => h("div", { class: "notice", key }, [h("p", text)]);
+
+/** What is seen while a file is held over the page. */
+export const Drop = {
+  render: () => state.dropping && h("div", { class: "drop" }, [
+    h("div", [icon("open", 32), h("strong", t("common.dropHere")), h("span", t("common.dropKinds"))]),
+  ]),
+};
+
 export const Notices = {
-  render: () => h("div", { class: "notices", role: "status" },
-    state.notices.map((notice) => h(Notice, { key: notice.id, notice }))),
+  render: () => h("div", { class: "notices", role: "status" }, [
+    state.server && !state.server.ready && doing("preparing", t("common.preparing")),
+    state.opening && doing("opening", t("common.opening", { file: state.opening })),
+    ...state.notices.map((notice) => h(Notice, { key: notice.id, notice })),
+  ]),
 };

@@ -6,7 +6,7 @@ import { select, state, view } from "../store.js";
 import { formatNumber } from "../text/numbers.js";
 import { t } from "../text/text.js";
 
-const BOTH = new Set(["overlap", "joints-coincide"]); // codes of messages whose text names both parts
+const BOTH = new Set(["overlap", "joint-missing", "joints-coincide"]); // codes of messages whose text names both parts
 
 /** Return the parts that a message is about: { joints, beams }. */
 export function partsOf({ code, where = "", message = "" }, grid) {

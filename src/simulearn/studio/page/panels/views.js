@@ -3,7 +3,7 @@
 import { computed, h, ref } from "/libraries/vue.js";
 import { Plan } from "../plan/plan.js";
 import { Shape } from "../shape/shape.js";
-import { state, view } from "../store.js";
+import { view } from "../store.js";
 import { t } from "../text/text.js";
 import { Segmented, iconButton } from "./controls.js";
 import { NARROW, PHONE, useMedia } from "./media.js";
@@ -79,7 +79,6 @@ export const Views = {
     const closeTip = () => { view.tip = false; };
     return () => h("main", { class: "main" }, [
       h("h1", { class: "hidden" }, t("common.studio")),
-      state.server && !state.server.ready && h("p", { class: "tip", role: "status" }, t("common.preparing")),
       narrow.value && h(PaneSwitch),
       view.tip && h("div", { class: "tip" }, [
         h("p", t("common.tip")),

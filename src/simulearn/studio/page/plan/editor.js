@@ -11,7 +11,9 @@ const REACH = { mouse: 8, touch: 20 }; // px around a joint that still hit it
 // px around what is fitted; the tools lie on the left, in a low view (as in the style sheet) on top
 const MARGIN = { left: 84, right: 48, top: 56, bottom: 60 };
 const LOW_MARGIN = { left: 32, right: 32, top: 72, bottom: 28 };
+const NO_MARGIN = { left: 0, right: 0, top: 0, bottom: 0 };
 const LOW = 420; // px
+const AROUND = 40; // mm on each side of a place
 
 export const editor = shallowReactive({
   camera: firstCamera({ width: 600, height: 600 }),
@@ -84,6 +86,11 @@ export function fitAll() {
     )
     : firstCamera(editor.size);
   editor.fitted = true;
+}
+
+/** Show a place and what is around it. */
+export function showAround([x, y]) {
+  setCamera(fit({ x: [x - AROUND, x + AROUND], y: [y - AROUND, y + AROUND] }, editor.size, NO_MARGIN));
 }
 
 /** Return the point in mm that lies in the middle of the view. */

@@ -2,7 +2,7 @@
 
 import { sameTopology } from "./lengths.js";
 
-const BOTH = new Set(["overlap", "joints-coincide"]); // messages about two parts
+const BOTH = new Set(["overlap", "joint-missing", "joints-coincide"]); // messages about two parts
 
 /** Return {joints, beams}: maps from a number to {kind: "error" | "warning", messages: [string]}.
  *

@@ -40,6 +40,15 @@ export const Over = {
   },
 };
 
+/** The places that a panel speaks of. */
+export const Places = {
+  render() {
+    const { points = [], current = null } = state.places ?? {};
+    return h("g", { class: "plan-places", "aria-hidden": "true" }, points.map(([x, y], k) =>
+      h("circle", { key: k, class: { current: k === current }, cx: x, cy: y })));
+  },
+};
+
 function guides(snapped) {
   return (snapped?.guides ?? []).map(([p, q], k) => h("path", { key: k, class: "guide", d: `M${p}L${q}` }));
 }

@@ -15,7 +15,7 @@ import { isSelected, only, partAt, toggled } from "./hit.js";
 import { command, listenKeys, nudgeStep } from "./keys.js";
 import { Marks } from "./marks.js";
 import { Menu, openMenu } from "./menu.js";
-import { Over, Under } from "./overlay.js";
+import { Over, Places, Under } from "./overlay.js";
 import { Parts } from "./parts.js";
 import { listen } from "./pointer.js";
 import { Popover } from "./popover.js";
@@ -61,6 +61,11 @@ export const Plan = {
       state.hover = null;
     });
     watch(() => state.document, fitNew);
+    watch(() => state.placed, () => {
+      clearMarks();
+      editor.popover = null;
+      fitAll();
+    });
 
     /** Return whether the space bar is down; then it does not select when it is released. */
     function useSpace() {
@@ -208,10 +213,10 @@ const World = {
   render() {
     const { x, y, scale } = editor.camera;
     return h("g", {
-      class: ["plan-world", { far: scale < 1.7 }],
+      class: ["plan-world", { far: scale < 1.7, farther: scale < 0.4 }],
       transform: `matrix(${scale} 0 0 ${-scale} ${x} ${y})`,
       style: { "--scale": sizeScale(scale) },
-    }, [h(Under), h(Parts), h(Marks), h(Over)]);
+    }, [h(Under), h(Parts), h(Marks), h(Places), h(Over)]);
   },
 };
 

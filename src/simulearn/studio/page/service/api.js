@@ -1,15 +1,19 @@
 // Questions to the server. Every function returns what was asked for, or throws a Problem.
 
+import { patternOf } from "../document/imported.js";
 import { MEDIA_TYPE, parseFrames } from "./frames.js";
 
 /** Why the server did not answer a question; `code` and `where` are for programs.
  *
- * revision and document: the newer one of a document that was changed elsewhere.
+ * revision and document: the newer one of a document that was changed elsewhere. size and guess: of a
+ * drawing whose unit is not known.
  */
 export class Problem extends Error {
-  constructor({ status = 0, code = "", where = "", detail = "", errors = [], revision, document }) {
+  constructor({
+    status = 0, code = "", where = "", detail = "", errors = [], revision, document, size, guess,
+  }) {
     super(detail);
-    Object.assign(this, { status, code, where, errors, revision, document });
+    Object.assign(this, { status, code, where, errors, revision, document, size, guess });
   }
 
   /** Whether the server was not reached at all. */
@@ -81,11 +85,19 @@ export const loadDocument = (id) => json(`/api/documents/${id}`);
 export const saveDocument = (id, revision, document, { last = false } = {}) =>
   json(`/api/documents/${id}`, { method: "PUT", body: { revision, document }, keepalive: last });
 
-/** Return {grid, goals, name, messages} of a file that the user opens. */
-export async function openFile(file) {
+/** Return {grid, goals, name, messages, drawing} of a file that the user opens.
+ *
+ * options: how a drawing is to be read: { unit, width, layers, flatten, actuators, tolerance, without };
+ * those that are null are left to the server. layers are names.
+ */
+export async function openFile(file, options = {}) {
+  const query = new URLSearchParams({ name: file.name });
+  const layers = options.layers?.map(patternOf);
+  for (const [key, value] of Object.entries({ ...options, layers }))
+    for (const one of [value ?? []].flat()) query.append(key, one);
   let response;
   try {
-    response = await fetch(`/api/open?name=${encodeURIComponent(file.name)}`, {
+    response = await fetch(`/api/open?${query}`, {
       method: "POST", headers: { "Content-Type": "application/octet-stream" }, body: file,
     });
   } catch {

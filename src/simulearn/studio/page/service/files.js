@@ -1,12 +1,15 @@
-// Files in and out: opening, dropping, pasting, saving, exporting, links.
+// Files in and out: designs and drawings of other programs, opening, dropping, pasting, saving, exporting, links.
 
 import { emptyDocument, readDocument, sameGrid } from "../document/document.js";
 import { encode } from "../document/link.js";
 import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
+import { showDrawing } from "./drawings.js";
 
-const ENDINGS = ".json,application/json";
+const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,.html,application/json,image/svg+xml";
+const PASTED = [[/^<(svg|\?xml|!--)/, "common.pastedDrawing"], [/^[{[]/, "common.pasted"]]; // how it begins
+const LATE = 300; // ms after which the page says that it reads a file
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
 
 /** Let the user choose a file, and open it. */
@@ -17,32 +20,58 @@ export function chooseFile() {
   input.click();
 }
 
-/** Replace the design by that of a file, as one edit. */
-export async function open(file) {
-  let found;
+let openings = 0; // only the last one counts
+
+/** Replace the design by that of a file, as one edit.
+ *
+ * options: how a drawing is to be read; where its unit is not known, the page asks for it.
+ */
+export async function open(file, options = {}) {
+  openings += 1;
+  const turn = openings;
+  const late = setTimeout(() => { state.opening = file.name; }, LATE);
+  let [found, document] = [null, null];
   try {
-    found = await openFile(file);
+    found = await openFile(file, options);
+    document = documentOf(found);
   } catch (problem) {
-    refuse(file, problem);
+    if (turn === openings) refuse(file, problem, options);
     return;
+  } finally {
+    clearTimeout(late);
+    if (turn === openings) state.opening = null;
   }
-  const { grid, goals = [], name, messages = [], printer } = found;
-  let document;
-  try {
-    const { schema } = emptyDocument();
-    document = readDocument({ schema, name, grid, goals, printer: printer || state.document.printer });
-  } catch (error) {
-    refuse(file, error);
-    return;
-  }
+  if (turn !== openings) return;
+  const { drawing, messages = [] } = found;
   place(document, t("common.didOpen", { file: file.name }));
-  if (messages.length) {
+  if (drawing) showDrawing(file, options, found);
+  else if (messages.length) {
     const title = t("common.openNotes", { file: file.name });
     state.dialog = { name: "message", title, text: t("common.openMended"), messages };
   }
 }
 
-function refuse(file, { message, errors = [] }) {
+/** Return the document of an opened file; a drawing keeps the material and the printer. */
+function documentOf({ grid, goals = [], name, printer, drawing }) {
+  const { schema } = emptyDocument();
+  const { material } = drawing ? state.document.grid : grid;
+  const by = printer || state.document.printer;
+  return readDocument({ schema, name, grid: { ...grid, material }, goals, printer: by });
+}
+
+/** Say why a file cannot be opened, or ask for what is missing to open it. */
+export function refuse(file, problem, options) {
+  const { code, message, errors = [] } = problem;
+  const reason = message.replace(/^[^:]*: /, ""); // the title names the file
+  const ask = { reason, choose: (choice) => open(file, { ...options, ...choice }) };
+  if (code === "unit-unknown") {
+    state.dialog = { name: "unit", file: file.name, size: problem.size, guess: problem.guess, ...ask };
+    return;
+  }
+  if (code === "curves-only") {
+    state.dialog = { name: "curves", file: file.name, ...ask };
+    return;
+  }
   const title = t("common.openFailed", { file: file.name });
   state.dialog = { name: "message", title, text: message, messages: errors };
 }
@@ -52,6 +81,7 @@ export function place(document, label) {
   edit((before) => (sameGrid(before.grid, document.grid) && before.name === document.name
     && document.goals.length === 0 && before.goals.length === 0 ? before : document), { label });
   select({});
+  state.placed += 1;
   notify(t("common.placed", { name: document.name }), { label: t("common.undoWord"), run: undo });
 }
 
@@ -97,9 +127,15 @@ export async function copyLink() {
 /** Open files that are dropped on the page, and pasted text that is a design. */
 export function startFiles() {
   globalThis.addEventListener("dragover", (event) => {
-    if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    state.dropping = true;
+  });
+  globalThis.addEventListener("dragleave", (event) => {
+    if (!event.relatedTarget) state.dropping = false; // out of the window
   });
   globalThis.addEventListener("drop", (event) => {
+    state.dropping = false;
     const [file] = event.dataTransfer?.files ?? [];
     if (!file) return;
     event.preventDefault();
@@ -108,8 +144,9 @@ export function startFiles() {
   globalThis.addEventListener("paste", (event) => {
     const text = event.clipboardData?.getData("text/plain").trim() ?? "";
     const typing = event.target.closest?.("input, textarea, dialog");
-    if (typing || !text.startsWith("{") || text.length > MOST_PASTED) return;
+    const [, name] = PASTED.find(([start]) => start.test(text)) ?? [];
+    if (typing || !name || text.length > MOST_PASTED) return;
     event.preventDefault();
-    open(new File([text], t("common.pasted")));
+    open(new File([text], t(name)));
   });
 }

@@ -27,6 +27,7 @@ export function createAnnotations(container) {
   const make = (item) => {
     const element = create("g", {});
     element.dataset.id = item.id;
+    element.style.display = "none"; // until it is put in its place
     const marker = MARKERS[item.kind];
     if (item.kind === "line") element.append(create("line", { class: "reach" }), create("line", {}));
     if (item.kind === "polygon") element.append(create("polygon", {}));

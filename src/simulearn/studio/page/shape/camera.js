@@ -186,6 +186,11 @@ export function createCamera(element, { onChange, still = () => false }) {
       place(now);
     },
     set: (to) => go({ ...to, target: to.target.clone() }, false),
+    /** Stay where the camera is on its way. */
+    stop() {
+      cancelAnimationFrame(turning);
+      motion = null;
+    },
     dispose() {
       cancelAnimationFrame(turning);
       if (element) controls.dispose();

@@ -123,15 +123,17 @@ let active = null; // id of the handle that is dragged
 function drag(viewer, event, handle, k) {
   const element = event.currentTarget;
   const start = state.document.goals[k].target;
-  const begin = viewer.rayAt(event.clientX, event.clientY);
+  const rayAt = viewer.hold();
+  const begin = rayAt(event.clientX, event.clientY);
   active = handle.id;
   const follow = (now) => {
     if (now.pointerId !== event.pointerId || !(k in state.document.goals)) return;
-    move(k, dragged(start, handle, begin, viewer.rayAt(now.clientX, now.clientY)));
+    move(k, dragged(start, handle, begin, rayAt(now.clientX, now.clientY)));
   };
   const end = (now) => {
     if (now.pointerId !== event.pointerId) return;
     active = null;
+    viewer.release();
     endMerge();
     for (const [name, listener] of listeners) globalThis.removeEventListener(name, listener);
     viewer.stage.invalidate();

@@ -54,6 +54,7 @@ export const Shape = {
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
     let [triad, dimmer, reader] = [null, 0, 0];
+    let placed = state.placed; // when all of the shape was last brought into view for a new design
 
     const colour = () => {
       const by = hasValues(view.colour, shown.value?.result, other.value) ? view.colour : "actuator";
@@ -75,6 +76,10 @@ export const Shape = {
       shown.value = source();
       viewer.value.show(shown.value?.result ?? null, shown.value?.grid ?? null);
       viewer.value.overlay(view.overlay ? other.value : null);
+      if (placed !== state.placed && !stale.value) {
+        placed = state.placed;
+        viewer.value.fit();
+      }
       colour();
       marks();
       notes();

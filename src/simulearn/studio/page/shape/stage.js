@@ -16,8 +16,9 @@ const SOFTWARE = /swiftshader|llvmpipe|software|basic render/i;
 
 /** Whether three.js can draw here at all. */
 export function canDraw() {
-  const canvas = globalThis.document.createElement("canvas");
-  return Boolean(canvas.getContext("webgl2"));
+  const gl = globalThis.document.createElement("canvas").getContext("webgl2");
+  gl?.getExtension("WEBGL_lose_context")?.loseContext(); // a browser has few
+  return Boolean(gl);
 }
 
 /** Whether this browser draws without a graphics processor. */

@@ -39,6 +39,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
   let [pointer, hovering, pressed, fitted, disposed] = [null, 0, null, null, false];
   let [overlaid, gizmo, notes, kept] = [null, null, [], null];
   let [printing, fresh, roomy, frame] = [false, true, false, LAST];
+  let held = false; // whether a hand holds something: then the view stays as it is
   const shows = { ghost: true, ground: true };
   const stage = createStage(container, {
     before: drawNotes,
@@ -93,13 +94,13 @@ export function createViewer(container, { events = {}, still = () => false } = {
     };
   }
 
-  const rayAt = (x, y) => {
-    const box = stage.canvas.getBoundingClientRect();
+  const raysOf = (seen, box) => (x, y) => {
     const caster = new THREE.Raycaster();
     const [across, down] = [(x - box.left) / box.width, (y - box.top) / box.height];
-    caster.setFromCamera(new THREE.Vector2(2 * across - 1, 1 - 2 * down), camera.camera);
+    caster.setFromCamera(new THREE.Vector2(2 * across - 1, 1 - 2 * down), seen);
     return { origin: caster.ray.origin.toArray(), direction: caster.ray.direction.toArray() };
   };
+  const rayAt = (x, y) => raysOf(camera.camera, stage.canvas.getBoundingClientRect())(x, y);
   const partAt = ({ clientX, clientY }) => {
     if (!body.shown || printing) return null;
     const { origin, direction } = rayAt(clientX, clientY);
@@ -146,7 +147,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
     stage.resize(width, height);
     body.setSize(width, height);
     camera.resize(width, height);
-    if (!camera.touched) viewer.fit({ view: fresh ? "home" : null, animate: false });
+    if (!camera.touched && !held) viewer.fit({ view: fresh ? "home" : null, animate: false });
   });
   observer.observe(container);
   applyTheme();
@@ -162,7 +163,16 @@ export function createViewer(container, { events = {}, still = () => false } = {
   };
 
   const viewer = {
-    stage, camera, body, project, rayAt,
+    stage, camera, body, project,
+    /** Hold the view still for a drag; return rayAt(x, y), which stays that of the view as it is now. */
+    hold() {
+      held = true;
+      camera.stop();
+      return raysOf(camera.camera.clone(), stage.canvas.getBoundingClientRect());
+    },
+    release() {
+      held = false;
+    },
     /** Return mm that one pixel is at a point [x, y, z]. */
     pixel: (point) => camera.pixel(new THREE.Vector3(...point)),
     /** Show a result of a grid, or nothing. The camera stays unless the size is quite another. */
@@ -173,7 +183,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
         if (shows.ghost) ghost.show(result, passive(grid));
         ground.place(boundsOf(result, 0, 0), body.mesh);
         const bounds = boundsOf(result);
-        if (!fitted || grown(bounds)) viewer.fit({ view: fresh ? "home" : null, animate: false });
+        if (!held && (!fitted || grown(bounds))) viewer.fit({ view: fresh ? "home" : null, animate: false });
       }
       arrange();
     },

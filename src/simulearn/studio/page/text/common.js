@@ -202,6 +202,10 @@ export const common = {
     openNotes: "{file} is open",
     openMended: "Some things were changed or left out:",
     pasted: "pasted.json",
+    pastedDrawing: "pasted.svg",
+    opening: "Reading {file}…",
+    dropHere: "Drop a design, or a drawing of another program",
+    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ or JSON",
     unknownTitle: "No design at this address",
     unknownText:
       "The server does not know the design of this address, and this browser has no copy. Here is an "
@@ -463,6 +467,10 @@ export const common = {
     openNotes: "{file} ist geöffnet",
     openMended: "Einiges wurde geändert oder weggelassen:",
     pasted: "eingefuegt.json",
+    pastedDrawing: "eingefuegt.svg",
+    opening: "{file} wird gelesen …",
+    dropHere: "Einen Entwurf oder die Zeichnung eines anderen Programms ablegen",
+    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ oder JSON",
     unknownTitle: "Kein Entwurf an dieser Adresse",
     unknownText:
       "Der Server kennt den Entwurf dieser Adresse nicht, und dieser Browser hat keine Kopie. Hier ist "

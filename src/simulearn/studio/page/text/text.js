@@ -3,13 +3,14 @@
 
 import { view } from "../store.js";
 import { common } from "./common.js";
+import { drawing } from "./drawing.js";
 import { panels } from "./panels.js";
 import { plan } from "./plan.js";
 import { repairs } from "./repairs.js";
 import { shape } from "./shape.js";
 
 export const LANGUAGES = { en: "English", de: "Deutsch" };
-const PARTS = { common, panels, plan, repairs, shape };
+const PARTS = { common, drawing, panels, plan, repairs, shape };
 
 /** Return the string of a key such as "plan.draw", with {name} replaced by values.name. */
 export function t(key, values = {}) {

@@ -59,6 +59,28 @@ def to_bytes(grids: Sequence[Grid], outcomes: Sequence[Outcome]) -> bytes:
     return b"".join([MAGIC, struct.pack("<I", len(header)), header, *numbers])
 
 
+def from_bytes(message: bytes) -> list[dict[str, Any]]:
+    """Return the entries of a message, each with its arrays in place of where they begin.
+
+    Raises:
+        ValueError: it is not such a message, or is damaged.
+    """
+    try:
+        (size,) = struct.unpack_from("<I", message, len(MAGIC))
+        head = len(MAGIC) + 4 + size
+        numbers = np.frombuffer(message, "<f4", offset=head)
+        entries = json.loads(message[len(MAGIC) + 4 : head])["results"]
+        for entry in entries:
+            for name, place in entry.pop("arrays", {}).items():
+                first, shape = place["start"], tuple(place["shape"])
+                entry[name] = numbers[first : first + int(np.prod(shape))].reshape(shape)
+    except (struct.error, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError("is not a message of frames") from error
+    if not message.startswith(MAGIC):
+        raise ValueError("is not a message of frames")
+    return list(entries)
+
+
 def mises(stress: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the equivalent stress (von Mises), MPa, of components 11 22 33 12 13 23 (..., 6)."""
     a, b, c, ab, ac, bc = np.moveaxis(stress, -1, 0)

@@ -19,13 +19,15 @@ def libraries() -> dict[str, Path]:
     """
     spec = find_spec("nicegui")  # found without being imported, which would take a second
     if spec is None or spec.origin is None:
-        raise InputError("the studio needs a package: pip install 'simulearn[studio]'")
+        text = "interactive pages need a package: pip install 'simulearn[studio]'"
+        raise InputError(text, "package-missing")
     folder = Path(spec.origin).parent
     found = {name: folder / place for name, place in FILES.items()}
     for path in found.values():
         if not path.is_file():
             raise InputError(
-                f"{path} is missing: this version of NiceGUI is not one that the studio knows; "
-                "pip install 'simulearn[studio]' installs the right one"
+                f"{path} is missing: this version of NiceGUI is not one that SimuLearn knows; "
+                "pip install 'simulearn[studio]' installs the right one",
+                "package-missing",
             )
     return found

@@ -1,0 +1,145 @@
+"""Sizes that no print can have, mostly from another unit: every length of a grid is in mm.
+
+Too small: no beam is as long as it is wide, so that nothing is left between the joints. Too large:
+beams that cannot carry their own weight. A cantilever of length L, thickness h and modulus E sinks,
+by the theory of small motions, by L (L / l)^3 / 8 with l = (E h^2 / (12 q))^(1/3) and the weight q
+per volume. In the bath l is 102 mm for PLA: beams of 145 mm sink by a third of their length and
+still make a shape; those of three times l are said to sink by more than three times their length,
+which means that they hang down like cords, whatever is drawn. Finite elements take minutes to find
+that, so it is said before.
+"""
+
+from math import inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import Message
+from simulearn.grid.grid import Grid
+from simulearn.material import Material
+from simulearn.material.material import Section
+
+Numbers = NDArray[np.float64]
+
+CORD = 3.0  # times l: beams so long hang like cords
+STUBBY = 2.0  # widths: a grid without a longer beam is unusual
+LANKY = 2.0  # times the usual limit of a beam: a grid whose beams are longer is unusual
+USUAL = (15.0, 160.0)  # mm, of beams
+TYPICAL = 60.0  # mm, of beams
+UNITS = {  # mm
+    "metres": 1000.0,
+    "feet": 304.8,
+    "inches": 25.4,
+    "centimetres": 10.0,
+    "points": 25.4 / 72,
+    "pixels": 25.4 / 96,
+    "tenths of a millimetre": 0.1,
+    "thousandths of an inch": 0.0254,
+    "micrometres": 0.001,
+}
+
+
+def size_message(grid: Grid, material: Material, most: float) -> tuple[Message | None, bool]:
+    """Return what to say of a grid's size, None where it is usual, and whether that is an error.
+
+    Args:
+        grid: its beams join joints that exist; those without a length do not count.
+        material: its material system.
+        most: mm, the usual limit of a beam's length.
+    """
+    lengths = _lengths(grid)
+    if not len(lengths):
+        return None, False
+    section, middle = material.section, float(np.median(lengths))
+    whole = f"the whole grid is {_wide(grid)} and lengths are in mm"
+    if lengths.max() < STUBBY * section.width:
+        error = bool(lengths.max() < section.width)
+        than = "as it is wide" if error else "as two widths"
+        text = f"{whole}; its longest beam is {_mm(lengths.max())} long, not as long {than}"
+        text += f" ({section.width:g} mm)"
+    elif middle > cord_length(material):
+        error = True
+        text = (
+            f"{whole}; half of its beams are {_mm(middle)} long or longer, and beams of more than "
+            f"{cord_length(material):.0f} mm cannot carry their own weight in the bath"
+        )
+    elif middle > LANKY * most:
+        error = False
+        text = (
+            f"{whole}; half of its beams are {_mm(middle)} long or longer, where "
+            f"{most:g} mm is the usual limit"
+        )
+    else:
+        return None, False
+    return Message("size", "grid", text + unit_remark(grid)), error
+
+
+def impossible(lengths: Numbers, material: Material) -> NDArray[np.bool_]:
+    """Return which designs (T,) `size_message` gives an error for.
+
+    Args:
+        lengths: (T, B) mm, of their beams.
+        material: their material system.
+    """
+    if not lengths.shape[1]:
+        return np.zeros(len(lengths), bool)
+    most, cord = lengths.max(axis=1), cord_length(material)
+    wrong: NDArray[np.bool_] = most < material.section.width
+    if (most > cord).any():  # else no median is, either
+        wrong |= np.median(lengths, axis=1) > cord
+    return wrong
+
+
+def cord_length(material: Material) -> float:
+    """Return the length (mm) from which on a beam hangs like a cord; infinite without weight."""
+    return CORD * _bending_length(
+        material.section, material.law.modulus, material.gravity.body_force
+    )
+
+
+def _bending_length(section: Section, modulus: float, weight: float) -> float:
+    """Return l (mm); see the head of this module."""
+    if not weight:
+        return inf
+    return float((modulus * section.thickness**2 / (12 * weight)) ** (1 / 3))
+
+
+def unit_remark(grid: Grid) -> str:
+    """Return in which other unit a grid would have usual beams, to be added to a message."""
+    lengths = _lengths(grid)
+    middle = float(np.median(lengths)) if len(lengths) else 0.0
+    if not middle or USUAL[0] <= middle <= USUAL[1]:
+        return ""
+    likely = {
+        name: abs(np.log(middle * mm / TYPICAL))
+        for name, mm in UNITS.items()
+        if USUAL[0] <= middle * mm <= USUAL[1]
+    }
+    if not likely:
+        return ""
+    name = min(likely, key=lambda one: likely[one])
+    mm = UNITS[name]
+    return (
+        f"; read as {name}, half of the beams would be {_mm(middle * mm)} long or longer: "
+        f"multiply all coordinates by {mm:.4g}"
+    )
+
+
+def _lengths(grid: Grid) -> Numbers:
+    """Return the lengths (mm) of the beams that have one and whose joints exist."""
+    beams = grid.beams
+    there = ((beams >= 0) & (beams < len(grid.joints))).all(axis=1)
+    start, end = grid.joints[beams[there]].swapaxes(0, 1) if there.any() else np.zeros((2, 0, 2))
+    lengths: Numbers = np.hypot(*(end - start).T)
+    return lengths[lengths > 0]
+
+
+def _wide(grid: Grid) -> str:
+    used = np.unique(grid.beams)
+    joints = grid.joints[used[(used >= 0) & (used < len(grid.joints))]]
+    x, y = np.ptp(joints, axis=0)
+    return f"{_mm(x)[:-3]} by {_mm(y)} wide,"
+
+
+def _mm(length: float) -> str:
+    return f"{length:,.0f} mm" if length >= 1000 else f"{length:.3g} mm"
