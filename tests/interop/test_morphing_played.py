@@ -7,7 +7,7 @@ from PIL import Image
 
 import browsing
 from simulearn.interop import write_morph
-from simulearn.studio.libraries import libraries
+from simulearn.interop.libraries import libraries
 
 PAGE = """<!doctype html><meta charset="utf-8"><body style="margin:0">
 <script type="module">

@@ -8,6 +8,7 @@ import pytest
 import rhino3dm
 
 import synthetic
+from simulearn.drawings.importing import imported
 from simulearn.errors import InputError
 from simulearn.fabricate import load_printer, prepare
 from simulearn.fabricate.toolpath import ROLES
@@ -179,3 +180,18 @@ def test_a_print_alone_lies_on_the_bed(tmp_path):
     np.testing.assert_allclose(places[:, :2].min(0), job.path.bounds[0], atol=1e-9)
     np.testing.assert_allclose(np.unique(places[:, 2]), [layer.z for layer in job.path.layers])
     assert "printer" in dict(model.Strings[k] for k in range(len(model.Strings)))
+
+
+def test_what_is_written_can_be_read_as_a_drawing(tmp_path):
+    path = tmp_path / "a.3dm"
+    write_3dm(RESULT, path, Goals.centres(RESULT.centres[-1]))
+    back = imported(path.read_bytes(), path.name).grid
+    offset = back.joints.min(axis=0) - RESULT.grid.joints.min(axis=0)
+
+    def beams(grid, shift):
+        return {
+            (*sorted(map(tuple, (grid.joints[ends] + shift).round(3).tolist())), ratio)
+            for ends, ratio in zip(grid.beams, grid.actuators.tolist(), strict=True)
+        }
+
+    assert beams(back, 0.0) == beams(RESULT.grid, offset)
