@@ -43,7 +43,7 @@ def solved(monkeypatch):
     def solver(grid, material, progress, cancel):
         asked.append(grid)
         progress(12, 12)
-        return synthetic.result(grid)
+        return synthetic.result(grid, solid=False)
 
     monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
     return asked

@@ -202,3 +202,25 @@ def test_a_user_without_a_home_has_no_folders(monkeypatch):
         monkeypatch.setattr(platformdirs, name, nowhere)
     assert cache_folder() is None
     assert data_folder() is None
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_every_file_of_a_person_may_begin_with_a_byte_order_mark(tmp_path, encoding):
+    """Editors of Windows write one, and end lines with two characters."""
+    from simulearn.dataset import read_config
+    from simulearn.fabricate import load_printer
+    from simulearn.learn.config import read_config as read_training
+    from simulearn.material import read_material
+    from simulearn.material.material import HERE
+
+    def saved(name, text):
+        path = tmp_path / name
+        path.write_bytes(text.replace("\n", "\r\n").encode(encoding))
+        return path
+
+    assert load_printer(saved("lab.toml", 'base = "ender-3"\ntitle = "Lab"\n')).title == "Lab"
+    assert read_config(saved("set.toml", 'name = "tiny"\ntrials = 2\n')).trials == 2
+    beams = 'name = "b"\nkind = "beams"\ndata = "x.h5"\n[law]\nupdates = 1\n'
+    assert read_training(saved("train.toml", beams)).name == "b"
+    pla = (HERE / "pla-hot-water.toml").read_text("utf-8")
+    assert read_material(saved("pla.toml", pla)) == read_material(HERE / "pla-hot-water.toml")

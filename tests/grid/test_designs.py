@@ -81,5 +81,5 @@ def test_valid_designs_are_valid_and_their_redraws_counted():
 
 
 def test_rules_that_give_no_valid_design_say_so():
-    with pytest.raises(InputError, match="gave no valid design in 1000 redraws"):
+    with pytest.raises(InputError, match="gave no valid design in 1000 redraws; of the last"):
         draw_valid(Rules(length=(5.0, 5.0), cells=(1, 1), jitter=0.0), 0, 0)

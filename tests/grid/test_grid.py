@@ -26,9 +26,8 @@ CYCLE.append(CYCLE)
     [
         ("joints", [[0, 0, 5]] * 4, "joints-in-space", "joint 0",
          "joints[0] is [0, 0, 5]; joints are a list of [x, y], finite numbers in mm; z is not 0"),
-        ("joints", np.eye(3), "joints-in-space", "joint 2",
-         "joints[2] is [0.0, 0.0, 1.0]; joints are"),
-        ("joints", [[0, 0, 0], [0, 1, None]], "joint-place", "joint 1", "joints[1] is [0, 1, null"),
+        ("joints", np.eye(3), "joints-in-space", "joint 2", "joints[2] is [0.0, 0.0, 1.0]; "),
+        ("joints", [[0, 0, 0], [0, 1, None]], "joint-place", "joint 1", "joints[1] is [0, 1, n"),
         ("joints", [[0, 0, 0, 0]], "joint-place", "joint 0", "joints[0] is [0, 0, 0, 0]; joints"),
         ("joints", [[0, 0], [1, 1], [2]], "joint-place", "joint 2", "joints[2] is [2]; "),
         ("joints", [0, 0, 1, 1], "joint-place", "joint 0", "joints[0] is 0; joints are"),

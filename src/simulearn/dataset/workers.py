@@ -148,8 +148,8 @@ def _knock(address: str) -> None:
     """Raise OSError or ValueError where nobody listens; Dask would leave threads behind."""
     scheme, _, place = address.rpartition("://")
     host, _, port = place.rpartition(":")
-    if not host:
-        raise ValueError("no host and port")
+    if not place:
+        raise ValueError("no place")
     if scheme in ("", "tcp", "tls", "ws", "wss"):
         socket.create_connection((host.strip("[]"), int(port)), timeout=ANSWERING).close()
 

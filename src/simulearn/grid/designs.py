@@ -119,9 +119,13 @@ def draw_valid(rules: Rules, seed: int, k: int) -> tuple[Grid, int]:
     """
     for redraw in range(MOST_REDRAWS + 1):
         grid = draw(rules, seed, k, redraw)
-        if validate(grid, load_material(rules.material)).valid:
+        report = validate(grid, load_material(rules.material))
+        if report.valid:
             return grid, redraw
-    raise InputError(f"{rules} gave no valid design in {MOST_REDRAWS} redraws")
+    raise InputError(
+        f"the rules gave no valid design in {MOST_REDRAWS} redraws; of the last one, "
+        f"{report.errors[0].message} ({rules})"
+    )
 
 
 def _lengthened(grid: Grid, rules: Rules) -> Grid:
