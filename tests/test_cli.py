@@ -28,12 +28,13 @@ from simulearn import __version__, cli
 from simulearn.errors import ComputationError
 from simulearn.grid import grid_from_dict, grid_to_dict, library, make, read_grid
 from simulearn.material.material import HERE
+from simulearn.outputs import FILMS, WRITERS
 from simulearn.schedule import Snap
 from simulearn.simulate import ENGINES, read_json, read_npz
 from simulearn.simulate.engines import Engine
 
 SADDLE = grid_to_dict(make("saddle"))
-ENDINGS = ["json", "npz", "png", "pdf", "svg", "gif", "glb", "stl", "vtu", "pvd"]
+ENDINGS = [ending[1:] for ending in WRITERS if ending not in (*FILMS, ".html")]
 
 
 @pytest.fixture
@@ -101,7 +102,7 @@ def test_simulate_writes_every_format_at_once(run, tmp_path):
     with Image.open(at["png"]) as picture, Image.open(at["gif"]) as animation:
         assert min(picture.size) > 400
         assert animation.n_frames > 12
-    for ending in ("glb", "stl"):
+    for ending in ("glb", "morph.glb", "stl", "obj", "ply"):
         assert not trimesh.load(at[ending]).is_empty
     assert len(meshio.read(at["vtu"]).points) > 0
     assert written(tmp_path) == sorted([*(file.name for file in files), "saddle_frames"])

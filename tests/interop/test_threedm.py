@@ -195,3 +195,11 @@ def test_what_is_written_can_be_read_as_a_drawing(tmp_path):
         }
 
     assert beams(back, 0.0) == beams(RESULT.grid, offset)
+
+
+def test_the_command_gcode_writes_the_toolpath_for_rhino(tmp_path, run):
+    path = tmp_path / "print.3DM"
+    code, _, _ = run("gcode", "twist", "--printer", "ender-3", "-o", path)
+    assert code == 0
+    _, objects = read(path)
+    assert {"skeleton::top 1", "outlines", "toolpath::active"} <= set(objects)

@@ -109,7 +109,12 @@ def _mesh(result: Result, frame: int) -> Any:
 
 
 def _material(result: Result) -> Material | None:
-    """Return the material of a result, or None if its name no longer means the same."""
+    """Return the material of which the stress of a solid's bricks follows, if there is one.
+
+    There is none for a solid that is only a mesh, and where the name no longer means the same.
+    """
+    if result.solid is None or result.solid.weights.size == 0:
+        return None
     try:
         material = load_material(result.grid.material)
     except InputError:
