@@ -47,31 +47,28 @@ def size_message(grid: Grid, material: Material, most: float) -> tuple[Message |
         material: its material system.
         most: mm, the usual limit of a beam's length.
     """
-    lengths = _lengths(grid)
+    lengths = _lengths(grid, grid.beams)
     if not len(lengths):
         return None, False
-    section, middle = material.section, float(np.median(lengths))
-    whole = f"the whole grid is {_wide(grid)} and lengths are in mm"
-    if lengths.max() < STUBBY * section.width:
-        error = bool(lengths.max() < section.width)
+    width, longest, middle = material.section.width, lengths[-1], _middle(lengths)
+    cord, error = cord_length(material), True
+    halfway = f"half of its beams are {_mm(middle)} long or longer"
+    if longest < STUBBY * width:
+        error = bool(longest < width)
         than = "as it is wide" if error else "as two widths"
-        text = f"{whole}; its longest beam is {_mm(lengths.max())} long, not as long {than}"
-        text += f" ({section.width:g} mm)"
-    elif middle > cord_length(material):
-        error = True
+        text = f"its longest beam is {_mm(longest)} long, not as long {than} ({width:g} mm)"
+    elif middle > cord:
         text = (
-            f"{whole}; half of its beams are {_mm(middle)} long or longer, and beams of more than "
-            f"{cord_length(material):.0f} mm cannot carry their own weight in the bath"
+            f"{halfway}, and beams of more than {cord:.0f} mm cannot carry their own weight in "
+            "the bath"
         )
     elif middle > LANKY * most:
         error = False
-        text = (
-            f"{whole}; half of its beams are {_mm(middle)} long or longer, where "
-            f"{most:g} mm is the usual limit"
-        )
+        text = f"{halfway}, where {most:g} mm is the usual limit"
     else:
         return None, False
-    return Message("size", "grid", text + unit_remark(grid)), error
+    whole = f"the whole grid is {_wide(grid)} and lengths are in mm"
+    return Message("size", "grid", f"{whole}; {text}{unit_remark(grid)}"), error
 
 
 def impossible(lengths: Numbers, material: Material) -> NDArray[np.bool_]:
@@ -106,8 +103,9 @@ def _bending_length(section: Section, modulus: float, weight: float) -> float:
 
 def unit_remark(grid: Grid) -> str:
     """Return in which other unit a grid would have usual beams, to be added to a message."""
-    lengths = _lengths(grid)
-    middle = float(np.median(lengths)) if len(lengths) else 0.0
+    there = ((grid.beams >= 0) & (grid.beams < len(grid.joints))).all(axis=1)
+    lengths = _lengths(grid, grid.beams[there])
+    middle = _middle(lengths) if len(lengths) else 0.0
     if not middle or USUAL[0] <= middle <= USUAL[1]:
         return ""
     likely = {
@@ -125,13 +123,17 @@ def unit_remark(grid: Grid) -> str:
     )
 
 
-def _lengths(grid: Grid) -> Numbers:
-    """Return the lengths (mm) of the beams that have one and whose joints exist."""
-    beams = grid.beams
-    there = ((beams >= 0) & (beams < len(grid.joints))).all(axis=1)
-    start, end = grid.joints[beams[there]].swapaxes(0, 1) if there.any() else np.zeros((2, 0, 2))
-    lengths: Numbers = np.hypot(*(end - start).T)
-    return lengths[lengths > 0]
+def _lengths(grid: Grid, beams: NDArray[np.int64]) -> Numbers:
+    """Return the rising lengths (mm) of those beams that have one; all their joints exist."""
+    x, y = (grid.joints[beams[:, 1]] - grid.joints[beams[:, 0]]).T
+    lengths: Numbers = np.sort(np.hypot(x, y))
+    return lengths[np.searchsorted(lengths, 0.0, side="right") :]
+
+
+def _middle(rising: Numbers) -> float:
+    """Return the median; NumPy's takes a while to begin."""
+    n = len(rising)
+    return float(rising[(n - 1) // 2] + rising[n // 2]) / 2
 
 
 def _wide(grid: Grid) -> str:
