@@ -9,6 +9,8 @@ from pathlib import Path
 import platformdirs
 import pytest
 
+import browsing
+
 VALIDATOR = "gltf-validator@2.0.0-dev.3.10"  # of Khronos, from npm
 SCRIPT = """
 const [module, file] = process.argv.slice(1);
@@ -55,3 +57,11 @@ def ffmpeg():
     found = shutil.which("ffmpeg")
     required("ffmpeg", found is not None)
     return found
+
+
+@pytest.fixture
+def page():
+    """A page of a headless Chromium."""
+    required("chromium", browsing.chromium_path() is not None)
+    with browsing.chromium() as browser:
+        yield browser.new_page(viewport={"width": 800, "height": 600})

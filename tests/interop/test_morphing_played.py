@@ -2,10 +2,8 @@
 
 import bent
 import numpy as np
-import pytest
 from PIL import Image
 
-import browsing
 from simulearn.interop import write_morph
 from simulearn.interop.libraries import libraries
 
@@ -39,14 +37,6 @@ window.at = (time) => {
 };
 window.ready = true;
 </script>"""
-
-
-@pytest.fixture
-def page():
-    if browsing.chromium_path() is None:
-        pytest.skip("chromium is not installed")
-    with browsing.chromium() as browser:
-        yield browser.new_page(viewport={"width": 800, "height": 600})
 
 
 def test_a_viewer_plays_it(tmp_path, page):
