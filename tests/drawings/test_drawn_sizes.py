@@ -177,6 +177,16 @@ def test_no_lines_at_all():
         grid_of(drawing(scaled(1e-3)), Options(unit="mm"))
 
 
+def test_the_chords_of_a_small_curve_do_not_make_the_size_odd():
+    def circle(chord):
+        angles = np.linspace(0, 2 * np.pi, 33)
+        return np.stack([65 + 4 * np.cos(angles), 65 + 4 * np.sin(angles), 0 * angles], axis=1)
+
+    unit = Unit(1.0, "mm", "the test")
+    found = drawing(l_grid(), plain=False, unit=unit, curves=[Curve("CIRCLE", circle)])
+    assert {mend.code for mend in grid_of(found, Options(flatten=0.5)).mends} >= {"flattened"}
+
+
 @pytest.mark.parametrize("option", ["tolerance", "flatten"])
 def test_options_that_make_no_sense(option):
     for value in (0, -1, float("nan"), float("inf")):

@@ -100,6 +100,58 @@ def test_escaped_letters_are_read() -> None:
     assert read_dxf(data).lines[0].layer == "Träger"
 
 
+def bare(entities: str, version: str = "") -> bytes:
+    """Return a file as small programs write it: no marks, no handles, no tables."""
+    head = f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\n{version}\n0\nENDSEC\n" if version else ""
+    return f"{head}0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n".encode()
+
+
+@pytest.mark.parametrize("version", ["", "AC1009", "AC1015", "AC1027"])
+def test_files_of_small_programs_are_read(version: str) -> None:
+    layer = "8\nA\n62\n1\n"
+    points = "10\n0\n20\n0\n10\n10\n20\n10\n10\n20\n20\n0\n"
+    knots = "40\n0\n40\n0\n40\n0\n40\n1\n40\n1\n40\n1\n"
+    drawing = read_dxf(
+        bare(
+            f"0\nLINE\n{layer}10\n0\n20\n0\n11\n65\n21\n0\n"
+            f"0\nLWPOLYLINE\n{layer}90\n3\n70\n1\n{points}"
+            f"0\nSPLINE\n{layer}70\n8\n71\n2\n72\n6\n73\n3\n{knots}{points}"
+            f"0\nMTEXT\n{layer}10\n0\n20\n0\n1\nabc\n"
+            f"0\nARC\n{layer}10\n0\n20\n0\n40\n5\n50\n0\n51\n90\n",
+            version,
+        )
+    )
+    assert ends(drawing) == [
+        [[0, 0, 0], [65, 0, 0]],
+        [[0, 0, 0], [10, 10, 0], [20, 0, 0], [0, 0, 0]],
+    ]
+    assert {(line.layer, line.colour) for line in drawing.lines} == {("A", "#ff0000")}
+    assert [curve.kind for curve in drawing.curves] == ["SPLINE", "ARC"]
+    assert left_out(drawing) == {("MTEXT", "A", "is text"): 1}
+    assert not drawing.messages
+
+
+def test_a_file_of_r12_may_hold_later_things() -> None:
+    document = grid("R12")
+    document.blocks.new("B").add_line((0, 0), (0, 9))
+    space = document.modelspace()
+    space.add_blockref("B", (200, 0))
+    space.add_polyline2d([(0, 0), (9, 9)], close=True)
+    document.paperspace().add_line((0, 0), (4, 4))
+    text = written(document).decode()
+    place = text.index("  0\nENDSEC", text.index("ENTITIES"))
+    later = "0\nLWPOLYLINE\n100\nAcDbPolyline\n8\nA\n90\n2\n70\n1\n10\n5\n20\n5\n10\n7\n20\n7\n"
+    drawing = read_dxf((text[:place] + later + text[place:]).encode())
+    assert segments(drawing) >= expected()
+    assert ends(drawing)[-3:] == [
+        [[200, 0, 0], [200, 9, 0]],
+        [[0, 0, 0], [9, 9, 0], [0, 0, 0]],
+        [[5, 5, 0], [7, 7, 0], [5, 5, 0]],
+    ]
+    assert drawing.lines[-1].layer == "A"
+    assert left_out(drawing) == {("LINE", "0", "is in paper space"): 1}
+
+
 def test_a_line_says_where_it_is() -> None:
     document = new()
     line = document.modelspace().add_line((0, 0, 3), (65, 0, 4))
@@ -494,6 +546,14 @@ def test_rows_of_a_reference_are_refused_before_they_are_read() -> None:
     assert time.monotonic() - start < 20
 
 
+def test_too_many_things_are_refused_before_they_are_read() -> None:
+    start = time.process_time()
+    with pytest.raises(InputError, match="too many things") as caught:
+        read_dxf(bare("0\nTEXT\n" * 1_000_000))
+    assert caught.value.code == "too-large"
+    assert time.process_time() - start < 10
+
+
 def test_too_many_lines_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(collecting, "MAX_SEGMENTS", 9)
     with pytest.raises(InputError, match="more than 9 line segments"):
@@ -557,14 +617,10 @@ def test_a_file_without_unit_has_a_guess(measurement: int, scale: float, name: s
     assert "65 mm long" in drawing.guess.source
 
 
-def test_the_guess_of_a_file_that_says_nothing_is_by_size() -> None:
-    text = (
-        "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nA\n10\n0\n20\n0\n11\n{}\n21\n0\n0\nENDSEC\n0\nEOF\n"
-    )
-    guess = read_dxf(text.format(0.065).encode()).guess
-    assert guess is not None
-    assert guess.name == "m"
-    assert read_dxf(text.format(1e9).encode()).guess is None
+def test_a_file_that_says_nothing_has_no_guess() -> None:
+    drawing = read_dxf(bare("0\nLINE\n8\nA\n10\n0\n20\n0\n11\n65\n21\n0\n"))
+    assert drawing.unit is None
+    assert drawing.guess is None
 
 
 def test_an_unknown_number_of_a_unit_is_told() -> None:
@@ -635,6 +691,9 @@ def test_a_spline_of_impossible_numbers_is_left_out() -> None:
         (b"", "no DXF file"),
         (b"\x00" * 100, "no DXF file"),
         (b"<svg/>", "no DXF file"),
+        (b"\n" * 200_000, "no DXF file"),
+        (b"0\nSECTION\n" + b"\n" * 200_000, "damaged"),
+        (b"0\nSECTION\n2\nENTITIES\n" + b" " * 200_000, "damaged"),
         (b"AC1027\x00\x00\x00", "DWG"),
         (b"AutoCAD Binary DXF\r\n\x1a\x00", "damaged|no DXF file"),
         (b"0\nSECTION\n", "damaged|no DXF"),

@@ -351,11 +351,9 @@ def test_units_of_the_file(read) -> None:
 
 
 @pytest.mark.parametrize("system", ["None", "Unset", "CustomUnits"])
-def test_a_file_without_unit_has_a_guess_by_its_size(read, system: str) -> None:
+def test_a_file_can_be_without_unit(read, system: str) -> None:
     drawing = read(grid(system, scale=0.001))
     assert drawing.unit is None
-    assert drawing.guess is not None
-    assert drawing.guess.name == "m"
     assert bool(drawing.messages) == (system == "CustomUnits")
 
 

@@ -147,7 +147,7 @@ def test_three_thousand_lines_are_read_in_well_below_a_second():
     )
     begin = time.process_time()
     assert len(read(svg(body)).lines) == 3000
-    assert time.process_time() - begin < 2.0  # .4 s measured on an idle machine
+    assert time.process_time() - begin < 2.0  # .4 to .6 s measured on a busy machine
 
 
 MIXED = svg(

@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import rhino3dm
 from PIL import Image
 
 from simulearn.grid import make, read_grid, validate, write_grid
@@ -36,6 +37,8 @@ def test_a_search_leaves_grid_figures_history_and_pictures(run, task_file, tmp_p
     for name in ("error.png", "shape.png", "changing.gif"):
         with Image.open(folder / name) as picture:
             assert np.asarray(picture.convert("L")).std() > 10
+    rhino = rhino3dm.File3dm.Read(str(folder / "shape.3dm"))
+    assert {"targets", "skeleton", "frames::frame 11"} <= {q.FullPath for q in rhino.Layers}
 
     # What the files say is so.
     from simulearn.simulate import engine

@@ -184,7 +184,7 @@ def test_half_a_file_is_never_left(tmp_path, monkeypatch):
     before = path.read_bytes()
 
     def half(file, **arrays):
-        file.write_bytes(b"PK half")
+        file.write(b"PK half")
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(np, "savez_compressed", half)

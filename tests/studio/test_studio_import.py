@@ -83,7 +83,7 @@ def test_layers_curves_and_actuators_are_chosen(client):
     assert len(frame["grid"]["beams"]) == 4
     plain = sent(client, svg(), actuators="none").json()
     assert set(plain["grid"]["actuators"]) == {0}
-    flat = sent(client, svg(), flatten=0.5, unit="mm").json()
+    flat = sent(client, svg(), flatten=0.5).json()
     assert "curves" not in {message["code"] for message in flat["messages"]}
     assert len(flat["grid"]["beams"]) > len(plain["grid"]["beams"])
 

@@ -4,6 +4,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,9 +54,12 @@ def search_pictures(
 ) -> list[str]:
     """Draw the error curve, the shape beside its targets, and the design changing.
 
+    The shape and its targets are written for Rhino, too, where its package is installed.
+
     Returns:
         The files that were written; a shape without an answer has no picture.
     """
+    from simulearn.interop import write_3dm
     from simulearn.show.inverse import changing, error_curve, wanted
     from simulearn.simulate import Result
     from simulearn.simulate import engine as engine_of
@@ -78,6 +82,9 @@ def search_pictures(
         with replacing(folder / "shape.png") as temporary:
             wanted(shape, task.aims, float(error)).savefig(temporary)
         names.append("shape.png")
+        if find_spec("rhino3dm") is not None:
+            write_3dm(shape, folder / "shape.3dm", task.aims)
+            names.append("shape.3dm")
     pairs = [(r, step) for r, step in zip(outcomes, steps, strict=True) if isinstance(r, Result)]
     if pairs:
         results, drawn = zip(*pairs, strict=True)

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from simulearn.drawings.parts import parts
 from simulearn.drawings.pieces import EXACT
 
 Numbers = NDArray[np.float64]
@@ -58,7 +57,7 @@ def united(
     none = np.zeros((0, 2))
     if not len(a):
         return Runs(ends, np.arange(len(ends)), none, none)
-    group = _groups(len(ends), a, b)
+    _, group = np.unique(parts(len(ends), a, b), return_inverse=True)
     for loose in _loose(ends, group, tolerance):
         group[loose] = group.max() + 1 + _split(ends[loose], tolerance)
     # Runs are numbered by their first pieces, so that those of a clean drawing keep their order.
@@ -102,11 +101,6 @@ def _overlap(a: Numbers, b: Numbers, tolerance: float) -> NDArray[np.bool_]:
     turn = abs(aside[:, 1] - aside[:, 0]) / np.minimum(*size)
     on: NDArray[np.bool_] = (abs(aside).max(axis=1) <= tolerance) & (turn <= ALIKE)
     return on & (common > tolerance)
-
-
-def _groups(count: int, a: Indices, b: Indices) -> Indices:
-    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(count, count))
-    return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
 def _fitted(ends: Numbers, group: Indices, heft: Numbers) -> tuple[Numbers, Numbers]:

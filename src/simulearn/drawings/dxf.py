@@ -71,7 +71,7 @@ def _variable(data: bytes, found: Any, name: str) -> Any:
 
 
 def _guess(measurement: Any, lines: list[Line]) -> Unit | None:
-    """Return the likeliest unit of a file that names none.
+    """Return the likeliest unit of a file that names none, or None.
 
     Args:
         measurement: what $MEASUREMENT says: 1 is metric, 0 English.
@@ -82,4 +82,4 @@ def _guess(measurement: Any, lines: list[Line]) -> Unit | None:
         return likely_unit(lines, ("mm", "cm", "m"), f"{reason}: metric")
     if measurement == 0:
         return likely_unit(lines, ("in", "ft"), f"{reason}: inches")
-    return likely_unit(lines, ("mm", "cm", "m", "in", "ft"), "")
+    return None

@@ -1,15 +1,18 @@
-"""A DXF file as a document of ezdxf: text or binary, in any encoding, repaired where damaged."""
+"""A DXF file as a document of ezdxf: in any encoding, and repaired where it is damaged."""
 
 import io
 import logging
 import re
+from itertools import islice
 from typing import Any
 
+from simulearn.drawings.dxf_text import as_text, completed, is_binary
 from simulearn.errors import InputError
 
+# More than can be read in a reasonable time; a grid has far fewer.
+MAX_THINGS = 200_000
 MAX_POINTS = 500_000
 
-_BINARY = b"AutoCAD Binary DXF\r\n\x1a\x00"
 _CODEPAGE = re.compile(rb"\$DWGCODEPAGE\s+3\s+(\S+)")
 _VERSION = re.compile(rb"\$ACADVER\s+1\s+(AC\d{4})")
 # What ezdxf repairs of entities, by the numbers of ezdxf.audit.AuditError; it repairs much else
@@ -31,42 +34,30 @@ def document(data: bytes) -> tuple[Any, list[str]]:
     logging.getLogger("ezdxf").addHandler(logging.NullHandler())
     if re.match(rb"AC\d\d\d\d", data):
         raise InputError("this is a DWG file; save it as DXF", "dxf-dwg")
-    if data.startswith(_BINARY):
-        return _binary(data)
-    text = _text(data)
-    if not re.search(r"^\s*0\s*\n\s*SECTION\s*$", text[:100_000], re.MULTILINE):
+    text = as_text(data) if is_binary(data) else _text(data)
+    if not re.search(r"^[ \t]*0[ \t]*\n[ \t]*SECTION[ \t]*$", text[:100_000], re.MULTILINE):
         raise InputError("this is no DXF file: no SECTION begins in it", "dxf-broken")
-    if len(re.findall(r"\n *10\n", text)) > MAX_POINTS:  # 10 is the x of a point
-        raise InputError(
-            "the drawing has too many points; keep only the lines of the grid", "too-large"
-        )
-    return _ascii(text)
-
-
-def _ascii(text: str) -> tuple[Any, list[str]]:
+    _refuse_large(text)
     from ezdxf.document import Drawing
 
+    text = completed(text)
     try:
         return Drawing.read(io.StringIO(text)), []
     except Exception as error:  # a damaged file fails in any way
         return _recovered(text, error)
 
 
-def _binary(data: bytes) -> tuple[Any, list[str]]:
-    from ezdxf.document import Drawing
-    from ezdxf.lldxf.tagger import binary_tags_loader
-
-    try:
-        return Drawing.load(binary_tags_loader(data, errors="replace")), []
-    except Exception as error:  # a damaged file fails in any way
-        lines = []
-        try:
-            for tag in binary_tags_loader(data, errors="replace"):
-                value = tag.value.hex() if isinstance(tag.value, bytes) else tag.value
-                lines.append(f"{tag.code}\n{value}\n")
-        except Exception:  # what came before is whole
-            pass
-        return _recovered("".join(lines), error)
+def _refuse_large(text: str) -> None:
+    """Refuse a file of more things or points than can be read in a reasonable time."""
+    things = points = 0
+    for code in islice(io.StringIO(text), 0, None, 2):
+        things += code.strip() == "0"
+        points += code.strip() == "10"  # the x of a point
+    if things > MAX_THINGS or points > MAX_POINTS:
+        raise InputError(
+            "the drawing has too many things or points; keep only the lines of the grid",
+            "too-large",
+        )
 
 
 def _recovered(text: str, why: Exception) -> tuple[Any, list[str]]:
@@ -97,7 +88,7 @@ def _ended(text: str) -> str:
 
     Half a line would be read as one that ends at the origin.
     """
-    if re.search(r"\n\s*0\s*\n\s*EOF\s*$", text):
+    if text[-200:].split()[-2:] == ["0", "EOF"]:
         return text
     lines = text.split("\n")[:-1]  # the last one may be cut
     last = len(lines) - len(lines) % 2 - 2

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -133,6 +133,8 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
         raise _nothing(drawing, curves)
     ratios, told = ratios_of([*lines, *curves], options.actuators)
     size = measured(_polylines(lines, curves, None))
+    if lines and curves:  # chords of curves are no beams to judge a size by
+        size = replace(size, beam=measured(_polylines(lines, [], None)).beam)
     unit, tolerance, odd_size = _unit(drawing, size, options)
     messages = [_unit_told(unit, size), *odd_size, *messages, *told]
     chords = None if flatten is None else flatten / unit.mm

@@ -9,10 +9,9 @@ nearly parallel, the joint lies at the mean of the places where the runs are nea
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from simulearn.drawings.meetings import Stations, merged
+from simulearn.drawings.parts import parts
 from simulearn.grid.cleaning import kept
 
 Numbers = NDArray[np.float64]
@@ -39,11 +38,10 @@ def placed(ends: Numbers, at: Stations, tolerance: float) -> tuple[Stations, Num
         joints = _crossings(ends, at, tolerance)
         tree = shapely.STRtree(shapely.points(joints))
         a, b = tree.query(shapely.points(joints), "dwithin", tolerance)
-        links = (np.ones(int((a < b).sum()), bool), (a[a < b], b[a < b]))
-        if not len(links[0]):
+        two = a < b
+        if not two.any():
             return at, joints
-        graph = coo_array(links, shape=(len(joints), len(joints)))
-        _, node = connected_components(graph, directed=False)
+        node = parts(len(joints), a[two], b[two])
         at = merged(at.run, node[at.node], at.place, at.start, at.end)
 
 

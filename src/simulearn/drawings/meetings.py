@@ -9,9 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from simulearn.drawings.parts import parts
 from simulearn.drawings.pieces import EXACT
 from simulearn.grid.sketch import cross
 
@@ -100,9 +99,7 @@ def _joined(
     apart = place[other] - place[one]
     near = (run[one] == run[other]) & (apart <= np.where(at_end, trim, tolerance))
     near |= (run[one] == run[other]) & at_end & _beyond(place, label, one, other, runs)
-    count = int(label.max()) + 1
-    links = (np.ones(int(near.sum()), bool), (label[one[near]], label[other[near]]))
-    _, node = connected_components(coo_array(links, shape=(count, count)), directed=False)
+    node = parts(int(label.max()) + 1, label[one[near]], label[other[near]])
     return merged(run, node[label], place, label < runs, (label >= runs) & (label < 2 * runs))
 
 

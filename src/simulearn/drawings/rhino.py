@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from simulearn.drawings.cad_units import likely_unit, unit
+from simulearn.drawings.cad_units import unit
 from simulearn.drawings.collecting import MAX_DEPTH, Collected, Matrix, exploded
 from simulearn.drawings.drawing import Drawing, Points
 from simulearn.drawings.nurbs import Nurbs
@@ -31,7 +31,7 @@ _UNITS = {
     "Yards": "yd",
     "Miles": "mi",
     "PrinterPoints": "pt",
-    "PrinterPicas": "pica",
+    "PrinterPicas": "pc",
     "NauticalMiles": "nautical mile",
     "AstronomicalUnits": "astronomical unit",
     "LightYears": "light year",
@@ -63,14 +63,12 @@ def read_3dm(data: bytes) -> Drawing:
         walk.found.say(f"The file is damaged: {model['lost']} of its objects could not be read.")
     if system == "CustomUnits":
         walk.found.say("The file has a custom unit, whose length cannot be read.")
-    names = ("mm", "cm", "m", "in", "ft")
     return Drawing(
         "Rhino (.3dm)",
         walk.found.lines,
         walk.found.curves,
         walk.found.left_out,
         unit=named,
-        guess=None if named else likely_unit(walk.found.lines, names, ""),
         messages=walk.found.messages,
     )
 

@@ -1,8 +1,12 @@
-"""Results for ParaView: one frame as .vtu, all of them as a .pvd series."""
+"""Results for ParaView: one frame as .vtu, all of them as a .pvd series.
+
+Displacements are mm, stresses MPa: what is still locked in and the Cauchy stress of the elastic
+deformation, in global axes and in the order that VTK gives to six numbers of a tensor.
+"""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -10,7 +14,12 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.files import replacing
+from simulearn.material import Material, load_material
+from simulearn.schedule import SCHEDULE
 from simulearn.simulate import FRAMES, Result
+
+if TYPE_CHECKING:
+    from simulearn.fea import Solid
 
 # Places of the 20 nodes of a quadratic hexahedron in the order of VTK, twice the coordinates.
 # fmt: off
@@ -20,13 +29,16 @@ VTK20 = np.array([
     [0, 0, 1], [2, 0, 1], [2, 2, 1], [0, 2, 1],
 ])
 # fmt: on
+VTK_TENSOR = [0, 1, 2, 3, 5, 4]  # xx yy zz xy yz xz
 
 
 def write_vtu(result: Result, path: Path | str, frame: int = -1) -> None:
     """Write one frame as an unstructured VTK grid, mm.
 
-    It is the solid mesh of quadratic bricks with its displacements where the engine has one, else
-    one linear brick a joint and two a beam.
+    It is the solid mesh of quadratic bricks where the engine has one, with the mean stress of each
+    brick; else one linear brick a joint and two a beam, with the stress at the beams' corners. A
+    solid mesh whose material is no longer known by its name is written as linear bricks, too,
+    since the stress of its own bricks cannot be computed.
 
     Raises:
         InputError: meshio is not installed, or the file cannot be written.
@@ -75,17 +87,68 @@ def _mesh(result: Result, frame: int) -> Any:
         import meshio
     except ImportError as error:
         raise InputError("VTK files need a package: pip install 'simulearn[vtk]'") from error
-    if result.solid is not None and result.displacements is not None:
+    material = _material(result)
+    known = result.stress is None or material is not None
+    if result.solid is not None and result.displacements is not None and known:
         solid, u = result.solid, result.displacements[frame]
+        cells: dict[str, Any] = {"beam": solid.parts[:, 0]}
+        if result.stress is not None and material is not None:
+            cells |= _with_mises(_of_bricks(solid, material, u, frame % FRAMES))
         return meshio.Mesh(
             solid.nodes + u,
             [("hexahedron20", solid.bricks[:, vtk_order()])],
             point_data={"displacement": u},
-            cell_data={"beam": [solid.parts[:, 0]]},
+            cell_data={name: [values] for name, values in cells.items()},
         )
     points, bricks = _blocks(result, frame)
     flat, _ = _blocks(result, 0)
-    return meshio.Mesh(points, [("hexahedron", bricks)], point_data={"displacement": points - flat})
+    data = {"displacement": points - flat}
+    if result.stress is not None:
+        data |= _with_mises(_at_corners(result, frame))
+    return meshio.Mesh(points, [("hexahedron", bricks)], point_data=data)
+
+
+def _material(result: Result) -> Material | None:
+    """Return the material of which the stress of a solid's bricks follows, if there is one.
+
+    There is none for a solid that is only a mesh, and where the name no longer means the same.
+    """
+    if result.solid is None or result.solid.weights.size == 0:
+        return None
+    try:
+        material = load_material(result.grid.material)
+    except InputError:
+        return None
+    return material if material.identity == result.material else None
+
+
+def _of_bricks(
+    solid: "Solid", material: Material, u: NDArray[np.float64], frame: int
+) -> NDArray[np.float64]:
+    """Return the stress (E, 6) MPa of a solid's bricks."""
+    from simulearn.fea.laws import law_of
+    from simulearn.fea.stress import brick_stress
+
+    softening = 1 + material.creep.amplitude if frame == FRAMES - 1 else 1.0
+    return brick_stress(solid, law_of(material.law), u, SCHEDULE.released[frame], softening)
+
+
+def _at_corners(result: Result, frame: int) -> NDArray[np.float64]:
+    """Return the stress (P, 6) MPa at the points of `_blocks`; not a number at the joints."""
+    assert result.stress is not None
+    stress = result.stress[frame]
+    middle = stress[:, 1:3].mean(axis=1, keepdims=True)
+    of_beams = np.concatenate([stress[:, :1], middle, stress[:, 3:]], axis=1).reshape(-1, 6)
+    of_joints = np.full((result.joints[frame].size // 3, 6), np.nan)
+    return np.concatenate([of_joints, of_beams])
+
+
+def _with_mises(stress: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Return stresses (n, 6), 11 22 33 12 13 23, as arrays of VTK, with their von Mises values."""
+    xx, yy, zz, xy, xz, yz = stress.T
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    mises = np.sqrt(normal / 2 + 3 * (xy**2 + xz**2 + yz**2))
+    return {"stress": stress[:, VTK_TENSOR], "von Mises stress": mises}
 
 
 def vtk_order() -> NDArray[np.int64]:

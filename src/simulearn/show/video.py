@@ -22,7 +22,7 @@ RATE = 25  # pictures a second
 # it start before all of it is there.
 FORMATS = {
     ".mp4": "-f mp4 -c:v libx264 -preset fast -crf 18 -movflags +faststart",
-    ".webm": "-f webm -c:v libvpx-vp9 -crf 24 -b:v 0 -deadline good -cpu-used 6 -row-mt 1",
+    ".webm": "-f webm -c:v libvpx-vp9 -crf 24 -b:v 0 -deadline realtime -cpu-used 5 -row-mt 1",
 }
 INPUT = "-loglevel error -y -f rawvideo -pix_fmt rgb24"
 COLOURS = (

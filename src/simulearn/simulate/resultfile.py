@@ -205,8 +205,9 @@ def write_npz(result: Result, path: Path | str) -> None:
         for field in dataclasses.fields(result.solid):
             arrays[SOLID + field.name] = getattr(result.solid, field.name)
     arrays["units"] = json.dumps({key: UNITS[key] for key in arrays if key in UNITS})
-    with replacing(path) as temporary:
-        np.savez_compressed(temporary, **arrays)
+    with replacing(path) as temporary, temporary.open("wb") as file:
+        # NumPy adds an ending of its own to names such as A.NPZ.
+        np.savez_compressed(file, **arrays)
 
 
 def read_npz(path: Path | str, *, paths: bool = False) -> Result:

@@ -19,10 +19,16 @@ TYPES = {
     ".png": "image/png",
     ".pdf": "application/pdf",
     ".svg": "image/svg+xml",
+    ".csv": "text/csv",
     ".gif": "image/gif",
     ".html": "text/html; charset=utf-8",
+    ".mp4": "video/mp4",
+    ".webm": "video/webm",
     ".glb": "model/gltf-binary",
+    ".morph.glb": "model/gltf-binary",
+    ".3dm": "model/vnd.3dm",
     ".stl": "model/stl",
+    ".obj": "model/obj",
     ".zip": "application/zip",
 }
 

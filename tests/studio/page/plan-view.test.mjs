@@ -45,7 +45,7 @@ test("fitting shows the whole box inside the margins", () => {
 });
 
 test("handles follow the zoom in steps that nobody sees", () => {
-  for (const scale of [0.3, 1, 2.97, 60])
+  for (const scale of [0.01, 0.3, 1, 2.97, 60])
     assert.ok(Math.abs(camera.sizeScale(scale) / scale - 1) < 0.026);
   assert.equal(camera.sizeScale(3), camera.sizeScale(3.01));
 });
@@ -53,7 +53,7 @@ test("handles follow the zoom in steps that nobody sees", () => {
 test("the drawing grid is of 10 mm at usual zooms and suits others", () => {
   assert.equal(gridStep(3), 10);
   assert.equal(gridStep(1), 10);
-  for (const scale of [0.3, 0.7, 1, 3, 8, 20, 60]) {
+  for (const scale of [0.01, 0.3, 0.7, 1, 3, 8, 20, 60]) {
     const gap = gridStep(scale) * scale;
     assert.ok(gap >= 9 - 1e-9 && gap < 100, `${gap} px at ${scale}`);
     const { px } = scaleBar(scale);

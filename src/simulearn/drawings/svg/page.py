@@ -57,7 +57,7 @@ def density(document: Document) -> Density:
         return Density(72.0, "px, 72 per inch as Adobe Illustrator writes them", known=True)
     if version:
         numbers = re.match(r"(\d+)\.(\d+)", version)
-        old = bool(numbers) and (int(numbers[1]), int(numbers[2])) < (0, 92)  # type: ignore[index]
+        old = numbers is not None and (int(numbers[1]), int(numbers[2])) < (0, 92)
         old = old or f"{INKSCAPE} version" not in root
         words = "before 0.92" if old else version.split()[0]
         return Density(

@@ -7,6 +7,24 @@ import { t } from "../text/text.js";
 import { button } from "./controls.js";
 import { Dialog, close } from "./dialog.js";
 
+// What a person looks for, in order, and the formats of each; the page may know more than the server.
+const GROUPS = {
+  Picture: [".png", ".pdf", ".svg"],
+  Animation: [".html", ".gif", ".mp4", ".webm"],
+  Body: [".morph.glb", ".glb", ".3dm", ".stl", ".obj", ".ply"],
+  Data: [".json", ".csv", ".npz", ".vtu", ".pvd"],
+};
+
+/** Return [group, formats] of what the server writes; what the page does not know is data. */
+function grouped(formats) {
+  const known = Object.values(GROUPS).flat();
+  const others = formats.filter((one) => !known.includes(one));
+  return Object.entries(GROUPS)
+    .map(([name, some]) => [name, some.filter((one) => formats.includes(one))])
+    .map(([name, some]) => [name, name === "Data" ? [...some, ...others] : some])
+    .filter(([, some]) => some.length > 0);
+}
+
 /** Return the words for a format or engine, or nothing for one that the page does not know. */
 function words(key) {
   const text = t(key);
@@ -42,19 +60,21 @@ export const ExportDialog = {
     return () => h(Dialog, { title: t("common.exportTitle") }, {
       default: () => [
         h("fieldset", { class: "choices" }, [
-          h("legend", t("common.format")),
-          (state.server?.formats ?? []).map((one) => {
-            const name = one.slice(1);
-            return choice("format", format, one, name.toUpperCase(), words(`common.format_${name}`));
-          }),
-        ]),
-        h("fieldset", { class: "choices" }, [
           h("legend", t("common.engine")),
           (state.server?.engines ?? []).map((one) => {
             const name = words(`common.engine_${one}`) || one;
             return choice("engine", engine, one, name, words(`common.engineFor_${one}`));
           }),
         ]),
+        grouped(state.server?.formats ?? []).map(([group, formats]) =>
+          h("fieldset", { key: group, class: "choices" }, [
+            h("legend", t(`common.formats${group}`)),
+            formats.map((one) => {
+              const name = one.slice(1);
+              const text = words(`common.format_${name.replace(".", "_")}`);
+              return choice("format", format, one, name.toUpperCase(), text);
+            }),
+          ])),
         error.value && h("p", { class: "dialog-error", role: "alert" }, error.value),
       ],
       actions: () => [

@@ -1,7 +1,7 @@
 // The camera of the plan: where millimetres lie on the screen. Screen coordinates are pixels from
 // the plan's left upper corner, y downwards; the plan's own y is upwards.
 
-export const LEAST_SCALE = 0.3; // px per mm: 3 m over 900 px
+export const LEAST_SCALE = 0.01; // px per mm: a drawing in the wrong unit is seen whole, too
 export const MOST_SCALE = 60; // px per mm: a beam is 430 px wide
 const FIT_SCALE = 6; // px per mm: a single beam is not blown up further than this when fitted
 

@@ -213,7 +213,7 @@ const World = {
   render() {
     const { x, y, scale } = editor.camera;
     return h("g", {
-      class: ["plan-world", { far: scale < 1.7 }],
+      class: ["plan-world", { far: scale < 1.7, farther: scale < 0.4 }],
       transform: `matrix(${scale} 0 0 ${-scale} ${x} ${y})`,
       style: { "--scale": sizeScale(scale) },
     }, [h(Under), h(Parts), h(Marks), h(Places), h(Over)]);
