@@ -51,18 +51,31 @@ def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
         InputError: the file cannot be read or does not describe a grid; one line says where.
     """
     try:
+        return grid_from_dict(_data(path), paths=paths)
+    except InputError as error:
+        if str(error).startswith(f"{path}: "):
+            raise
+        raise InputError(f"{path}: {error}", error.code, error.where) from error
+
+
+def _data(path: Path | str) -> Any:
+    """Return what a grid file's JSON holds; what is a drawing or a graph has a code of its own."""
+    try:
         text = read_text(path, MOST_BYTES)
     except InputError as error:
         if not isinstance(error.__cause__, UnicodeDecodeError):
             raise
-        raise InputError(f"{path}: is not a grid file, which is text", "not-a-grid") from error
+        raise InputError("is not a grid file, which is text", "not-a-grid") from error
     try:
-        return grid_from_dict(parse_json(text), paths=paths)
+        data = parse_json(text)
     except InputError as error:
-        if error.code == "json" and text.strip() and text.lstrip()[0] not in "{[":
-            line = f"{path}: is not a grid file, which is JSON and begins with {{"
+        if text.strip() and text.lstrip()[0] not in "{[":
+            line = "is not a grid file, which is JSON and begins with {"
             raise InputError(line, "not-a-grid") from error
-        raise InputError(f"{path}: {error}", error.code, error.where) from error
+        raise
+    if not isinstance(data, dict) or not {"schema", "joints", "beams"} & data.keys():
+        raise InputError(f"is {shown(data)}; {WHOLE}", "not-a-grid")
+    return data
 
 
 def write_grid(grid: Grid, path: Path | str) -> None:
@@ -89,8 +102,6 @@ def grid_from_dict(data: Any, *, paths: bool = False) -> Grid:
     Raises:
         InputError: a key, type, length, index or number is wrong; one line says which.
     """
-    if not isinstance(data, dict) or not {"schema", "joints", "beams"} & data.keys():
-        raise InputError(f"is {shown(data)}; {WHOLE}", "not-a-grid")
     try:
         file = GridFile.model_validate(data)
     except ValidationError as error:
