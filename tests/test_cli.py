@@ -13,7 +13,6 @@ import sys
 import time
 import warnings
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 
 import meshio
@@ -45,8 +44,7 @@ def solved(monkeypatch):
     def solver(grid, material, progress, cancel):
         asked.append(grid)
         progress(12, 12)
-        # Its solid has no integration points, so that there are no bricks to have a stress.
-        return replace(synthetic.result(grid, solid=False), displacements=np.zeros((12, 0, 3)))
+        return synthetic.result(grid)
 
     monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
     return asked
