@@ -241,8 +241,8 @@ def _list(messages: Sequence[Message]) -> str:
 
 
 def _said(message: Message) -> str:
-    told = message.where and message.where not in message.message
-    return f"{message.where}: {message.message}" if told else message.message
+    placed = message.where and message.where not in message.message
+    return f"{message.where}: {message.message}" if placed else message.message
 
 
 def _count(items: Sequence[Any], word: str) -> str:

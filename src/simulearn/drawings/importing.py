@@ -13,8 +13,8 @@ from simulearn.drawings.layers import LayerUse, layers_of, ratios_of
 from simulearn.drawings.mending import MENDS, Mended, mended
 from simulearn.drawings.plane import flattened, in_plane
 from simulearn.drawings.reading import own_grid, read_drawing
+from simulearn.drawings.report import Mend, curves_left_out, left_out, mend
 from simulearn.drawings.scaling import Size, given_unit, likely, size_warning, unit_error
-from simulearn.drawings.telling import Mend, curves_left_out, left_out, mend
 from simulearn.drawings.units import odd
 from simulearn.errors import InputError, Message
 from simulearn.grid import Grid
@@ -131,12 +131,12 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
         curves = []
     if not lines and not curves:
         raise _nothing(drawing, curves)
-    ratios, told = ratios_of([*lines, *curves], options.actuators)
+    ratios, ratio_messages = ratios_of([*lines, *curves], options.actuators)
     size = measured(_polylines(lines, curves, None))
     if lines and curves:  # chords of curves are no beams to judge a size by
         size = replace(size, beam=measured(_polylines(lines, [], None)).beam)
     unit, tolerance, odd_size = _unit(drawing, size, options)
-    messages = [_unit_told(unit, size), *odd_size, *messages, *told]
+    messages = [_unit_told(unit, size), *odd_size, *messages, *ratio_messages]
     chords = None if flatten is None else flatten / unit.mm
     points = [unit.mm * points for points in _polylines(lines, curves, chords)]
     plane, turned = _in_plane(points, tolerance, options.without)

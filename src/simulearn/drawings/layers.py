@@ -123,8 +123,8 @@ def ratios_of(things: Sequence[Line | Curve], choice: Choice) -> tuple[list[floa
         for colour in colours
         if (near := near_colour(colour))
     ]
-    told = {str(colour): (by_colour[colour], colours[colour]) for colour in colours}
-    messages += _taken(told, "colour")
+    taken = {str(colour): (by_colour[colour], colours[colour]) for colour in colours}
+    messages += _taken(taken, "colour")
     return [by_colour[thing.colour] or 0.0 for thing in things], messages
 
 

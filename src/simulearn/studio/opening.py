@@ -58,13 +58,13 @@ def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, 
         UnitError: the unit of a drawing is not known.
     """
     stem = _stem(name)
-    told = partial("{}: {}".format, stem or "the file")
+    named = partial("{}: {}".format, stem or "the file")
     try:
         parts = _parts(data, name, options)
     except UnitError as error:
-        raise UnitError(told(error), error.guess, error.size) from error
+        raise UnitError(named(error), error.guess, error.size) from error
     except InputError as error:
-        raise InputError(told(error), error.code, error.where, error.messages) from error
+        raise InputError(named(error), error.code, error.where, error.messages) from error
     check_document({"schema": DOCUMENT, "grid": parts["grid"], "goals": parts["goals"]})
     messages = [asdict(message) for message in parts["messages"]]
     return {**parts, "name": parts["name"] or stem, "messages": messages}

@@ -24,7 +24,7 @@ ASKED = "actuators"  # code of the message that says which ratios were given
 QUIET = ("fixed", "unit", ASKED)  # what is usual: it belongs in no balloon
 STEPS = 1e6  # of a ratio of 1; a layer's name holds no more
 FAR = 3.6  # mm, half the width of a beam: nearer is at the joint
-MOST_PLACES = 100  # of one mend that are told
+MOST_PLACES = 100  # of one mend that are messages
 
 CURVES = Input("Curves", "C", "The beams' axes: lines and polylines in one plane.", CURVE, 1, MOST)
 ACTUATORS = Input(
@@ -51,7 +51,7 @@ DRAWN = (CURVES, ACTUATORS, FIXED)
 
 @dataclass(frozen=True, eq=False)
 class Remark:
-    """Something to be told.
+    """Something to be messages.
 
     Attributes:
         text: for people.
@@ -82,7 +82,7 @@ class Design:
 
     @property
     def texts(self) -> list[str]:
-        """All that is to be told."""
+        """All that is to be messages."""
         return [one.text for one in self.remarks]
 
     @property
@@ -171,10 +171,10 @@ def design_from(
     Raises:
         InputError: the lines show no grid, or one that is too large.
     """
-    unit, told = unit_of(modelunits)
+    unit, messages = unit_of(modelunits)
     straight = [line for line in lines if isinstance(line, Line)]
     placement, plane = placement_of(_all_points(straight or lines, unit.mm), unit)
-    drawing = Drawing("Rhino", [], unit=unit, plain=bool(told))
+    drawing = Drawing("Rhino", [], unit=unit, plain=bool(messages))
     for line in lines:
         if isinstance(line, Line):
             drawing.lines.append(replace(line, points=_level(placement, line.points)))
@@ -185,10 +185,10 @@ def design_from(
     grid, moved = _held(found.grid, fixed, placement)
     design = Design(grid, placement)
     usual = {*QUIET} - ({"unit"} if loud and unit.mm != 1.0 else set())
-    for one in (*told, *plane, *moved, *found.messages):
+    for one in (*messages, *plane, *moved, *found.messages):
         if one.code == "fixed" and len(fixed):
             continue
-        quiet = one.code in usual and one not in told
+        quiet = one.code in usual and one not in messages
         design.remarks.append(Remark(one.message, design.place(one.where), one.code, quiet))
     for mend in found.mends:
         places = mend.places[:MOST_PLACES] or (design.place("grid"),)

@@ -13,7 +13,7 @@ from simulearn.studio.hops.schemas import Solve, solved
 from simulearn.studio.hops.values import Inputs, Path, branches, path_text, tree
 from simulearn.studio.problems import Problem
 
-MOST_TOLD = 20  # messages of one kind in a balloon
+MOST_MESSAGES = 20  # messages of one kind in a balloon
 
 
 @dataclass(frozen=True)
@@ -89,13 +89,13 @@ def solve(component: Component, request: Solve, app: FastAPI, cancel: Cancel) ->
             component, path, inputs, context, done, f"{path_text(path)}: " if len(runs) > 1 else ""
         )
     if done.problem is not None and not done.outputs:
-        problem, told = done.problem, bounded(done.errors)
+        problem, texts = done.problem, bounded(done.errors)
         raise Problem(
             problem.status_code,
             problem.code,
             problem.detail,
             problem.where,
-            more={"messages": told},
+            more={"messages": texts},
         )
     values = [tree(one.name, _tree(one.name, done.outputs), one.kind) for one in component.outputs]
     settled = all(one.finished for one in done.outputs.values()) and done.problem is None
@@ -116,8 +116,8 @@ def _unknown(component: Component, request: Solve) -> list[str]:
 def bounded(messages: Sequence[str]) -> list[str]:
     """Return messages without repetitions, the first of many."""
     different = list(dict.fromkeys(messages))
-    left = len(different) - MOST_TOLD
-    return different[:MOST_TOLD] + ([f"and {left} more"] if left > 0 else [])
+    left = len(different) - MOST_MESSAGES
+    return different[:MOST_MESSAGES] + ([f"and {left} more"] if left > 0 else [])
 
 
 def _run(
@@ -136,8 +136,8 @@ def _run(
         done.warnings += [head + text for text in outputs.warnings]
         done.errors += [head + text for text in outputs.errors]
         return
-    told = [one.message for one in done.problem.errors] or [str(done.problem.detail)]
-    done.errors += [head + text for text in told]
+    texts = [one.message for one in done.problem.errors] or [str(done.problem.detail)]
+    done.errors += [head + text for text in texts]
 
 
 def _tree(name: str, runs: Mapping[Path, Outputs]) -> dict[Path, Sequence[Any]]:

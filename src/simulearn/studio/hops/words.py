@@ -68,8 +68,8 @@ def _is_problem(event: MutableMapping[str, Any]) -> bool:
 
 def _answer(method: str, path: str, problem: dict[str, Any]) -> bytes:
     """Return what a request gets in place of a problem."""
-    told = problem.get("messages") or [one["message"] for one in problem.get("errors", ())]
-    told = told or [problem["detail"]]
+    texts = problem.get("messages") or [one["message"] for one in problem.get("errors", ())]
+    texts = texts or [problem["detail"]]
     describing = method in ("GET", "HEAD") or path.rstrip("/") == "/io"
-    content = io_schema("", [], [], "", told) if describing else solved(Solve(), [], [], told)
+    content = io_schema("", [], [], "", texts) if describing else solved(Solve(), [], [], texts)
     return json.dumps(content).encode()

@@ -14,8 +14,8 @@ from simulearn.studio.hops.components.shared import (
     MESSAGES,
     RATIOS,
     mended,
+    qualities,
     simulated,
-    told,
 )
 from simulearn.studio.hops.parameters import NUMBER, TEXT, Component, Input, Output
 from simulearn.studio.hops.searches import Searches
@@ -53,7 +53,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
             warnings.append(f"no mesh: {error}")
         else:
             values["Mesh"] = [meshes.mesh(meshes.surface(result, LAST), LAST, design)]
-            warnings += told(result)
+            warnings += qualities(result)
     values["Messages"] = list(dict.fromkeys(warnings))
     errors = [_why(problem)] if problem is not None else []
     return Outputs(values, values["Messages"], errors, finished)

@@ -6,8 +6,8 @@ from simulearn.studio.hops import meshes
 from simulearn.studio.hops.components.shared import (
     LAST,
     as_json,
+    qualities,
     simulated,
-    told,
 )
 from simulearn.studio.hops.design import DRAWN, design_of
 from simulearn.studio.hops.goals import GOALS, task_of
@@ -34,7 +34,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     shapes = [
         meshes.mesh(meshes.surface(r, LAST), LAST, d) for r, d in zip(results, best, strict=True)
     ]
-    qualities = list(dict.fromkeys(text for result in results for text in told(result)))
+    remarks = list(dict.fromkeys(text for result in results for text in qualities(result)))
     length = design.placement.length
     return Outputs(
         {
@@ -45,7 +45,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
             "Ratios": {k: one.grid.actuators.tolist() for k, one in enumerate(best)},
             "Meshes": shapes,
             "Grids": [as_json(one.grid) for one in best],
-            "Messages": [*design.texts, *qualities],
+            "Messages": [*design.texts, *remarks],
         },
         warnings=design.warnings,
     )

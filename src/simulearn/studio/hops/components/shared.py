@@ -83,7 +83,7 @@ def texts(messages: Sequence[Message]) -> list[str]:
     return [message.message for message in messages]
 
 
-def told(result: Result) -> list[str]:
+def qualities(result: Result) -> list[str]:
     """Return what qualifies a result."""
     return [*texts(result.warnings), *remarks(result)]
 

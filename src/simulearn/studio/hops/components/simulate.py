@@ -10,8 +10,8 @@ from simulearn.studio.hops.components.shared import (
     RATIOS,
     as_json,
     frame_of,
+    qualities,
     simulated,
-    told,
 )
 from simulearn.studio.hops.design import DRAWN, design_of
 from simulearn.studio.hops.parameters import (
@@ -46,7 +46,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     design = design_of(inputs, context.modelunits, settings)
     engine = inputs.text(ENGINE.name, "learned")
     (result,) = simulated([design.grid], engine, settings, context.cancel)
-    warnings = told(result)
+    warnings = qualities(result)
     bound = result.bound_mm
     return Outputs(
         {
