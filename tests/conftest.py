@@ -1,11 +1,11 @@
 """What tests of several folders use."""
 
-import os
 import shutil
 import sys
 
 import pytest
 
+from requiring import required
 from simulearn import cli
 from simulearn.compiled import make_room
 
@@ -34,15 +34,6 @@ def run(monkeypatch, capsys):
         return code, *capsys.readouterr()
 
     return run
-
-
-def required(what: str, found: bool) -> None:
-    """Skip a test whose program is not installed, or fail where all must be."""
-    if found:
-        return
-    if what in os.environ.get("SIMULEARN_REQUIRE", ""):
-        pytest.fail(f"{what} is required here, but was not found")
-    pytest.skip(f"{what} is not installed")
 
 
 @pytest.fixture(scope="session")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from skfem import Basis, ElementHexS2, MeshHex
 
+from requiring import required
 from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.fea import THREE_ACROSS, Solid, simulate_grid
 from simulearn.fea.calculix import calculix
@@ -31,10 +32,7 @@ WEIGHT = 2e-6  # N/mm3
 
 @pytest.fixture
 def ccx() -> None:
-    if shutil.which("ccx") is None:
-        if "calculix" in os.environ.get("SIMULEARN_REQUIRE", ""):
-            pytest.fail("CalculiX is required here, but ccx was not found")
-        pytest.skip("ccx is not installed")
+    required("calculix", shutil.which("ccx") is not None)
 
 
 def material(poisson: float = 0.3, modulus: float = 2.0, weight: float = 0.0) -> Material:

@@ -4,7 +4,6 @@ A brick whose twenty nodes are all prescribed has one known deformation gradient
 stress that CalculiX prints is compared with the closed form of each law.
 """
 
-import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from requiring import required
 from simulearn.fea.calculix import deck
 from simulearn.fea.calculix.brick import _nodes
 from simulearn.fea.calculix.growth import initial_strain, orthotropic
@@ -56,10 +56,7 @@ def cauchy(F: np.ndarray, S: np.ndarray) -> np.ndarray:
 def stress(tmp_path: Path):
     """The stress (3, 3) of a brick with a material at F, by CalculiX."""
     program = shutil.which("ccx")
-    if program is None:
-        if "calculix" in os.environ.get("SIMULEARN_REQUIRE", ""):
-            pytest.fail("CalculiX is required here, but ccx was not found")
-        pytest.skip("ccx is not installed")
+    required("calculix", program is not None)
 
     def run(material: str, F: np.ndarray, before: str = "", inside: str = "") -> np.ndarray:
         nodes = _nodes()

@@ -1,7 +1,6 @@
 """Programs of others that read what SimuLearn writes."""
 
 import json
-import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -9,7 +8,7 @@ from pathlib import Path
 import platformdirs
 import pytest
 
-import browsing
+from requiring import required
 
 VALIDATOR = "gltf-validator@2.0.0-dev.3.10"  # of Khronos, from npm
 SCRIPT = """
@@ -17,15 +16,6 @@ const [module, file] = process.argv.slice(1);
 require(module).validateBytes(new Uint8Array(require("fs").readFileSync(file)))
   .then((report) => console.log(JSON.stringify(report.issues)));
 """
-
-
-def required(what, found):
-    """Skip a test whose program is not installed, or fail where all must be."""
-    if found:
-        return
-    if what in os.environ.get("SIMULEARN_REQUIRE", ""):
-        pytest.fail(f"{what} is required here, but was not found")
-    pytest.skip(f"{what} is not installed")
 
 
 @pytest.fixture(scope="session")
@@ -60,8 +50,6 @@ def ffmpeg():
 
 
 @pytest.fixture
-def page():
+def page(visit):
     """A page of a headless Chromium."""
-    required("chromium", browsing.chromium_path() is not None)
-    with browsing.chromium() as browser:
-        yield browser.new_page(viewport={"width": 800, "height": 600})
+    return visit(viewport={"width": 800, "height": 600})
