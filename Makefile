@@ -9,6 +9,8 @@ INSTALL := $(if $(UV),$(UV) pip install --quiet --python $(BIN)/python,$(BIN)/py
 # Small matrices gain nothing from threads; two test processes would only fight over the cores.
 ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	XLA_FLAGS="--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+# What JAX compiles for one test it need not compile for the next, nor in the other process.
+KERNELS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/.pytest_cache/jax JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS=0.5
 # What must hold with every version of Python: grids, both solvers, engines.
 CORE := tests/material tests/grid tests/simulate tests/fea/test_trial.py tests/mechanics/test_poses.py \
 	tests/mechanics/test_topology.py tests/test_native.py tests/test_api.py
@@ -20,7 +22,7 @@ demo: $(VENV)/ready
 	$(BIN)/simulearn simulate examples/twist.json -o out/twist.json -o out/twist.png -o out/twist.gif -o out/twist.glb
 
 test: $(VENV)/ready
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist worksteal
+	$(ONE_THREAD) $(KERNELS) $(BIN)/python -m pytest -n 2 --dist worksteal
 
 # The core of the suite with another Python: make test-core PYTHON=python3.13 VENV=.venv-3.13
 test-core: $(VENV)/ready

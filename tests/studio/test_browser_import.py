@@ -113,7 +113,7 @@ def test_layers_and_curves_are_chosen_and_the_panel_comes_back(page, studio):
     expect(panel(page)).to_be_hidden()
     again = do.button(page, "Drawing: cell.svg")
     expect(again).to_be_focused()
-    do.click(page, (30, 40))
+    do.click(page, (30, 0))
     page.keyboard.press("+")
     expect(again).to_be_hidden()
     page.keyboard.press("Control+z")
