@@ -25,6 +25,33 @@ MM = LENGTHS | {
     "light year": 9460730472580800e3,
     "parsec": 149597870700e3 * 648000 / np.pi,
 }
+# The names of Rhino's unit systems.
+RHINO = {
+    "Angstroms": "angstrom",
+    "Nanometers": "nm",
+    "Microns": "um",
+    "Millimeters": "mm",
+    "Centimeters": "cm",
+    "Decimeters": "dm",
+    "Meters": "m",
+    "Dekameters": "dam",
+    "Hectometers": "hm",
+    "Kilometers": "km",
+    "Megameters": "Mm",
+    "Gigameters": "Gm",
+    "Microinches": "microinch",
+    "Mils": "mil",
+    "Inches": "in",
+    "Feet": "ft",
+    "Yards": "yd",
+    "Miles": "mi",
+    "PrinterPoints": "pt",
+    "PrinterPicas": "pc",
+    "NauticalMiles": "nautical mile",
+    "AstronomicalUnits": "astronomical unit",
+    "LightYears": "light year",
+    "Parsecs": "parsec",
+}
 
 
 def unit(name: str, source: str) -> Unit:
@@ -35,6 +62,18 @@ def unit(name: str, source: str) -> Unit:
         source: what says so.
     """
     return Unit(MM[name], name, source)
+
+
+def rhino_unit(system: str, source: str) -> Unit | None:
+    """Return a unit by the name of its system in Rhino, in any case; None where it has no length.
+
+    Args:
+        system: such as "Millimeters".
+        source: what says so.
+    """
+    names = {key.casefold(): name for key, name in RHINO.items()}
+    name = names.get(system.casefold())
+    return None if name is None else unit(name, source)
 
 
 def likely_unit(lines: list[Line], names: tuple[str, ...], reason: str) -> Unit:

@@ -4,39 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from simulearn.drawings.cad_units import unit
+from simulearn.drawings.cad_units import rhino_unit
 from simulearn.drawings.collecting import MAX_DEPTH, Collected, Matrix, exploded
 from simulearn.drawings.drawing import Drawing, Points
 from simulearn.drawings.nurbs import Nurbs
 from simulearn.drawings.rhino_file import contents
 from simulearn.drawings.rhino_layers import RhinoLayers, kind_of
-
-_UNITS = {
-    "Angstroms": "angstrom",
-    "Nanometers": "nm",
-    "Microns": "um",
-    "Millimeters": "mm",
-    "Centimeters": "cm",
-    "Decimeters": "dm",
-    "Meters": "m",
-    "Dekameters": "dam",
-    "Hectometers": "hm",
-    "Kilometers": "km",
-    "Megameters": "Mm",
-    "Gigameters": "Gm",
-    "Microinches": "microinch",
-    "Mils": "mil",
-    "Inches": "in",
-    "Feet": "ft",
-    "Yards": "yd",
-    "Miles": "mi",
-    "PrinterPoints": "pt",
-    "PrinterPicas": "pc",
-    "NauticalMiles": "nautical mile",
-    "AstronomicalUnits": "astronomical unit",
-    "LightYears": "light year",
-    "Parsecs": "parsec",
-}
 
 
 def read_3dm(data: bytes) -> Drawing:
@@ -58,7 +31,7 @@ def read_3dm(data: bytes) -> Drawing:
     walk = _Walk(model)
     walk.run()
     system = model["unit"]
-    named = unit(_UNITS[system], f"the file's unit is {system}") if system in _UNITS else None
+    named = rhino_unit(system, f"the file's unit is {system}")
     if model["lost"]:
         walk.found.say(f"The file is damaged: {model['lost']} of its objects could not be read.")
     if system == "CustomUnits":

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.drawings.cad_units import rhino_unit
 from simulearn.drawings.drawing import Unit
 from simulearn.drawings.plane import flattened
 from simulearn.errors import InputError, Message
@@ -13,24 +14,6 @@ from simulearn.grid.structure import FARTHEST
 Points = NDArray[np.float64]
 
 TOLERANCE = 1.0  # mm that lines may be off their plane
-LENGTHS = {  # mm, of Rhino's unit systems
-    "Microns": (1e-3, "um"),
-    "Millimeters": (1.0, "mm"),
-    "Centimeters": (10.0, "cm"),
-    "Decimeters": (100.0, "dm"),
-    "Meters": (1000.0, "m"),
-    "Dekameters": (1e4, "dam"),
-    "Hectometers": (1e5, "hm"),
-    "Kilometers": (1e6, "km"),
-    "Microinches": (25.4e-6, "uin"),
-    "Mils": (0.0254, "mil"),
-    "Inches": (25.4, "in"),
-    "Feet": (304.8, "ft"),
-    "Yards": (914.4, "yd"),
-    "Miles": (1609344.0, "mi"),
-    "PrinterPoints": (25.4 / 72, "pt"),
-    "PrinterPicas": (25.4 / 6, "pc"),
-}
 NAMELESS = ("None", "Unset", "CustomUnits")
 
 
@@ -71,11 +54,11 @@ def unit_of(modelunits: str | None) -> tuple[Unit, list[Message]]:
         what = f"the model's units are {modelunits}" if modelunits else "the request has no units"
         text = f"{what}; millimetres are taken"
         return Unit(1.0, "mm", what), [Message("unit", "modelunits", text)]
-    found = {name.lower(): length for name, length in LENGTHS.items()}.get(modelunits.lower())
+    found = rhino_unit(modelunits, f"the model's units are {modelunits}")
     if found is None:
         text = f'the model\'s units are "{modelunits[:40]}"; use Millimeters, Inches or alike'
         raise InputError(text, "unit-unknown", "modelunits")
-    return Unit(*found, f"the model's units are {modelunits}"), []
+    return found, []
 
 
 def placement_of(points: Points, unit: Unit) -> tuple[Placement, list[Message]]:
