@@ -51,6 +51,8 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/inverse.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/studio.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/studio_users.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/drawings.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/hops.py
 
 # The pictures of README.md and docs/studio.md.
 pictures: $(VENV)/ready

@@ -17,7 +17,7 @@ import numpy as np
 
 from report import Report
 from simulearn.drawings.drawing import Drawing, Line
-from simulearn.drawings.importing import grid_of
+from simulearn.drawings.importing import Options, grid_of
 
 SIDE = 65.0
 
@@ -96,7 +96,7 @@ def restored(count: int, seed: int) -> tuple[int, float]:
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
         lines = [line @ turn.T for line in messy(clean, random)]
         spatial = [Line(np.column_stack([line, np.zeros(2)])) for line in lines]
-        grid = grid_of(Drawing("benchmark", spatial, plain=True)).grid
+        grid = grid_of(Drawing("benchmark", spatial, plain=True), Options(place="drawn")).grid
         away = np.linalg.norm(grid.joints[:, None] - (places @ turn.T)[None], axis=2).min(axis=1)
         if len(grid.joints) == len(places) and len(grid.beams) == len(clean):
             good += away.max() < 0.01
