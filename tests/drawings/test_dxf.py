@@ -636,12 +636,16 @@ def test_things_without_length_or_number_are_left_out() -> None:
     space.add_lwpolyline([(0, 0)])
     space.add_circle((0, 0), 0)
     space.add_line((0, 0), (math.inf, 0))
+    space.add_arc((math.inf, 0), 5, 0, 90)
+    document.blocks.new("B").add_line((0, 0), (65, 0))
+    space.add_blockref("B", (math.nan, 0))
     drawing = read(document)
     assert segments(drawing) == expected()
     assert left_out(drawing) == {
         ("LWPOLYLINE", "0", "has no length"): 1,
         ("CIRCLE", "0", "has no length"): 1,
-        ("LINE", "0", "has coordinates that are no numbers"): 1,
+        ("LINE", "0", "has coordinates that are no numbers"): 2,
+        ("ARC", "0", "has coordinates that are no numbers"): 1,
     }
 
 
@@ -652,6 +656,17 @@ def test_a_file_cut_off_keeps_what_was_read_and_says_so(binary: bool) -> None:
     drawing = read_dxf(data[: mark - 60])
     assert len(segments(drawing) & expected()) >= 8
     assert drawing.messages[0].startswith("The file is damaged (")
+
+
+def test_a_curve_that_cannot_be_flattened_is_an_error() -> None:
+    def flatten(distance: float) -> np.ndarray:
+        raise ZeroDivisionError
+
+    found = collecting.Collected()
+    found.curve(flatten, np.eye(4), "ELLIPSE", "0", None, "ELLIPSE 2F")
+    with pytest.raises(InputError, match="ELLIPSE 2F is a curve that cannot") as caught:
+        found.curves[0].flatten(1.0)
+    assert caught.value.where == "ELLIPSE 2F"
 
 
 def test_a_missing_end_of_a_section_is_repaired_and_told() -> None:

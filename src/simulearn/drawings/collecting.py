@@ -111,8 +111,7 @@ class Collected:
         Raises:
             InputError: the drawing has too many.
         """
-        with np.errstate(all="ignore"):  # numbers too large to place are told below
-            placed = _placed(points, matrix)
+        placed = _placed(points, matrix)
         if len(placed) < 2:
             self.leave(kind, layer, "has no length")
         elif not (np.abs(placed) < TOO_LARGE).all():
@@ -144,10 +143,17 @@ class Collected:
             InputError: the drawing has too many.
         """
         self._segment(1)
+        if not (np.abs(matrix) < TOO_LARGE).all():
+            self.leave(kind, layer, "has coordinates that are no numbers")
+            return
         scale = float(np.linalg.norm(matrix[:3, :3], 2)) or 1.0
 
         def flattened(distance: float) -> Points:
-            return _placed(flatten(distance / scale), matrix)
+            try:
+                return _placed(flatten(distance / scale), matrix)
+            except (ArithmeticError, ValueError, RecursionError):
+                text = f"{where} is a curve that cannot be made into lines; draw it anew"
+                raise InputError(text, "curve-broken", where) from None
 
         self.curves.append(Curve(kind, flattened, layer, colour, where))
 

@@ -3,6 +3,8 @@
 from importlib.util import find_spec
 from typing import Any
 
+import numpy as np
+
 from simulearn.drawings.cad_units import likely_unit, unit
 from simulearn.drawings.drawing import Drawing, Line, Unit
 from simulearn.drawings.dxf_file import document
@@ -39,7 +41,8 @@ def read_dxf(data: bytes) -> Drawing:
     found, messages = document(data)
     walk = Walk(found)
     try:
-        walk.run()
+        with np.errstate(all="ignore"):  # numbers that are none are told
+            walk.run()
     except InputError:
         raise
     except Exception:  # a damaged file fails in the library in any way

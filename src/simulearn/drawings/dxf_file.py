@@ -111,8 +111,10 @@ def _reason(error: Exception) -> str:
 
 
 def _first_line(error: object) -> str:
-    line = (str(error).strip().splitlines() or [""])[0]
-    return line.removeprefix("DXFStructureError: ").rstrip(".")
+    """Return what an error says, short and fit for a terminal: it may quote what is broken."""
+    line = " ".join(str(error).removeprefix("DXFStructureError: ").split())
+    printable = "".join(letter for letter in line if letter.isprintable())
+    return printable[:120].rstrip(".")
 
 
 def _text(data: bytes) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from simulearn.drawings.collecting import TOO_LARGE
 from simulearn.drawings.drawing import Points
 from simulearn.drawings.nurbs import Nurbs
 
@@ -109,6 +110,8 @@ def _rounded(entity: Any) -> Iterator[Part]:
     radius = entity.dxf.major_axis.magnitude if kind == "ELLIPSE" else abs(entity.dxf.radius)
     if radius == 0:
         raise LeftOutError("has no length")
+    if not max(radius, *map(abs, entity.dxf.center)) < TOO_LARGE:
+        raise LeftOutError("has coordinates that are no numbers")
     yield Part(None, kind, lambda d: points_of(entity.flattening(_held(d, radius))))
 
 

@@ -29,7 +29,8 @@ def read_3dm(data: bytes) -> Drawing:
     """
     model = contents(data)
     walk = _Walk(model)
-    walk.run()
+    with np.errstate(all="ignore"):  # numbers that are none are told
+        walk.run()
     system = model["unit"]
     named = rhino_unit(system, f"the file's unit is {system}")
     if model["lost"]:
