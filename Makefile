@@ -53,6 +53,7 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/studio_users.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/drawings.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/hops.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/exports.py
 
 # The pictures of README.md and docs/studio.md.
 pictures: $(VENV)/ready

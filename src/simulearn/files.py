@@ -165,13 +165,18 @@ def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
 
 
+def marked_encoding(data: bytes) -> str | None:
+    """Return the encoding that a byte order mark names; None where bytes begin with none."""
+    return next((name for mark, name in MARKS.items() if data.startswith(mark)), None)
+
+
 def decoded(data: bytes) -> str:
     """Return bytes as text: UTF-8, or what a byte order mark says; lines end in a newline only.
 
     Raises:
         UnicodeDecodeError: they are no such text.
     """
-    encoding = next((name for mark, name in MARKS.items() if data.startswith(mark)), "utf-8")
+    encoding = marked_encoding(data) or "utf-8"
     return io.TextIOWrapper(io.BytesIO(data), encoding=encoding).read()
 
 

@@ -45,6 +45,24 @@ SCHEMA = {
     "warnings": [str], "errors": [str],
 }  # fmt: skip
 
+# The axes of a 2x2 grid of 65 mm, and the ratio of each.
+CORNERS = [(65.0 * x, 65.0 * y, 0.0) for y in range(3) for x in range(3)]
+PAIRS = [
+    (0, 1),
+    (1, 2),
+    (3, 4),
+    (4, 5),
+    (6, 7),
+    (7, 8),
+    (0, 3),
+    (1, 4),
+    (2, 5),
+    (3, 6),
+    (4, 7),
+    (5, 8),
+]
+RATIOS = [1, 0.5, -0.5, 0, 0.75, -1, 0.25, 0, -0.25, 1, 0, 0.5]
+
 
 def conform(value, kind, place=""):
     """Raise AssertionError unless JSON has exactly the fields and types of a class."""

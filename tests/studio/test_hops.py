@@ -9,9 +9,12 @@ import pytest
 import rhino3dm
 from asking import HOME, Client
 from grasshopper import (
+    CORNERS,
     ENTRY,
     HEADERS,
     IO_RESPONSE,
+    PAIRS,
+    RATIOS,
     SCHEMA,
     Hops,
     archived,
@@ -29,23 +32,7 @@ from simulearn.grid import Grid, grid_from_dict, make
 from simulearn.simulate import engine, one
 from simulearn.studio.settings import Settings
 
-CORNERS = [(65.0 * x, 65.0 * y, 0.0) for y in range(3) for x in range(3)]
-PAIRS = [
-    (0, 1),
-    (1, 2),
-    (3, 4),
-    (4, 5),
-    (6, 7),
-    (7, 8),
-    (0, 3),
-    (1, 4),
-    (2, 5),
-    (3, 6),
-    (4, 7),
-    (5, 8),
-]
 BENT = [(0, 0, 0), (60, 0, 0), (0, 60, 0), (60, 60, 50)]
-RATIOS = [1, 0.5, -0.5, 0, 0.75, -1, 0.25, 0, -0.25, 1, 0, 0.5]
 
 
 @pytest.fixture(scope="module")

@@ -10,30 +10,13 @@ import numpy as np
 import pytest
 import rhino3dm
 from asking import Client, problem
-from grasshopper import line_curve, polyline_curve
+from grasshopper import CORNERS, PAIRS, RATIOS, line_curve, polyline_curve
 from rhino8 import Rhino, installed
 
 from simulearn.grid import Grid, lattice
 from simulearn.simulate import engine, one, skin
 from simulearn.studio.hops.meshes import SPACING
 from simulearn.studio.rhino import simulearn_rhino as script
-
-CORNERS = [(65.0 * x, 65.0 * y, 0.0) for y in range(3) for x in range(3)]
-PAIRS = [
-    (0, 1),
-    (1, 2),
-    (3, 4),
-    (4, 5),
-    (6, 7),
-    (7, 8),
-    (0, 3),
-    (1, 4),
-    (2, 5),
-    (3, 6),
-    (4, 7),
-    (5, 8),
-]
-RATIOS = [1, 0.5, -0.5, 0, 0.75, -1, 0.25, 0, -0.25, 1, 0, 0.5]
 
 
 def layer(ratio):

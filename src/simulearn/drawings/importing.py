@@ -250,7 +250,12 @@ def _unit(drawing: Drawing, size: Size, options: Options) -> tuple[Unit, float, 
         return unit, options.tolerance, []
     if not drawing.plain:
         raise unit_error(drawing, size)
-    return unit, min(options.tolerance, FINE * beam), [size_warning(size, likely(drawing, size))]
+    warnings = [size_warning(size, likely(drawing, size))]
+    tolerance = min(options.tolerance, FINE * beam)
+    if tolerance < options.tolerance:
+        text = f"the tolerance is {tolerance:.3g} mm, a tenth of the middle beam, not"
+        warnings.append(Message("tolerance", "tolerance", f"{text} {options.tolerance:g} mm"))
+    return unit, tolerance, warnings
 
 
 def _unit_told(unit: Unit, size: Size) -> Message:

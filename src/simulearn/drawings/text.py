@@ -1,16 +1,7 @@
 """Text of drawings in the encodings that programs write."""
 
-import codecs
-
 from simulearn.errors import InputError
-
-MARKS = (
-    (codecs.BOM_UTF8, "utf-8"),
-    (codecs.BOM_UTF32_LE, "utf-32-le"),
-    (codecs.BOM_UTF32_BE, "utf-32-be"),
-    (codecs.BOM_UTF16_LE, "utf-16-le"),
-    (codecs.BOM_UTF16_BE, "utf-16-be"),
-)
+from simulearn.files import marked_encoding
 
 
 def decoded(data: bytes) -> str:
@@ -19,12 +10,12 @@ def decoded(data: bytes) -> str:
     Raises:
         InputError: the bytes are no text.
     """
-    encoding = next((name for mark, name in MARKS if data.startswith(mark)), None)
+    encoding = marked_encoding(data)
     if encoding is None and data[:4].count(0) == 2 and len(data) > 3:  # UTF-16 without a mark
         encoding = "utf-16-le" if data[1] == 0 else "utf-16-be"
     for name in (encoding,) if encoding else ("utf-8", "cp1252"):
         try:
-            text = data.decode(name).removeprefix("\ufeff")
+            text = data.decode(name)
         except UnicodeDecodeError:
             continue
         if "\0" not in text:

@@ -3,7 +3,6 @@
 All are known by what they hold, not by their names.
 """
 
-import codecs
 from dataclasses import asdict
 from functools import partial
 from pathlib import PurePath, PureWindowsPath
@@ -14,7 +13,7 @@ from simulearn.drawings.pages import SCHEMA as PAGE
 from simulearn.drawings.pages import page_contents
 from simulearn.drawings.units import UnitError
 from simulearn.errors import InputError, Message
-from simulearn.files import parse_json
+from simulearn.files import marked_encoding, parse_json
 from simulearn.grid import grid_from_dict, grid_to_dict
 from simulearn.grid.gridfile import SCHEMA as GRID
 from simulearn.inverse import Task, task_from_dict
@@ -26,11 +25,6 @@ from simulearn.simulate.resultfile import SCHEMA as RESULT
 from simulearn.studio.documentfile import SCHEMA as DOCUMENT
 from simulearn.studio.documentfile import check_document
 
-MARKS = {  # of text that is not UTF-8 (or marked as such)
-    codecs.BOM_UTF8: "utf-8-sig",
-    codecs.BOM_UTF16_LE: "utf-16",
-    codecs.BOM_UTF16_BE: "utf-16",
-}
 LOOK = 2**12  # bytes in which JSON begins
 OWN = "simulearn."  # the beginning of our schemas
 OPENED = "the studio opens grids, tasks, results, documents and drawings"
@@ -92,7 +86,7 @@ def _json(data: bytes) -> str | None:
     Raises:
         InputError: it is no text, although it begins so.
     """
-    encoding = next((e for mark, e in MARKS.items() if data.startswith(mark)), "utf-8")
+    encoding = marked_encoding(data) or "utf-8"
     try:
         start = data[:LOOK].decode(encoding, errors="replace").lstrip()
         return data.decode(encoding) if start.startswith(("{", "[")) else None

@@ -7,7 +7,8 @@ import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { sentence } from "./notes.js";
 
-const FIXED = new Set(["flattened"]); // kinds that another choice asks for
+// Kinds without a switch: another choice asks for them, or they are always done.
+const FIXED = new Set(["flattened", "crumb", "double"]);
 
 /** Return what was done, in the page's language, or in the server's words where it has none. */
 function words({ code, count, message }) {
