@@ -157,7 +157,7 @@ def _check(files: list[Path], grids: list[Path]) -> None:
 
 
 def _words(job: "Job") -> str:
-    from simulearn.fabricate.gcode import clock
+    from simulearn.fabricate.header import clock
 
     needs = job.estimate
     return f"{job.printer.title}, {clock(needs.seconds)}, {needs.filament_g:.1f} g"
@@ -165,7 +165,7 @@ def _words(job: "Job") -> str:
 
 def _table(job: "Job") -> Table:
     """Return what a print takes."""
-    from simulearn.fabricate.gcode import clock
+    from simulearn.fabricate.header import clock
 
     needs, settings = job.estimate, job.settings
     table = Table(

@@ -13,6 +13,7 @@ from pydantic import (
     BaseModel,
     ConfigDict,
     Field,
+    Strict,
     TypeAdapter,
     ValidationError,
     field_validator,
@@ -25,6 +26,9 @@ from simulearn.material.material import Print
 HERE = Path(__file__).parent / "printers"
 MOST_BASES = 8
 
+_Coordinate = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
+_Place = Annotated[tuple[_Coordinate, _Coordinate], Strict(strict=False)]  # TOML has lists
+_Box = Annotated[tuple[_Place, _Place], Strict(strict=False)]
 _Length = Annotated[float, Field(gt=0, le=1e4, allow_inf_nan=False)]
 _Rate = Annotated[float, Field(ge=0.01, le=1e6, allow_inf_nan=False)]
 _Speed = Annotated[float, Field(ge=10, le=1e5, allow_inf_nan=False)]
@@ -32,17 +36,31 @@ _Acceleration = Annotated[float, Field(ge=1, le=1e6, allow_inf_nan=False)]
 _Degrees = Annotated[float, Field(ge=0, le=1000, allow_inf_nan=False)]
 
 
+Firmware = Literal["marlin", "prusa", "klipper", "reprap", "bambu", "sailfish"]
+
+
 class _Table(BaseModel):
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
 
 
 class Bed(_Table):
-    """Where the nozzle may go: mm, the origin in the lower left corner or in the middle."""
+    """What can be printed on, mm.
+
+    Attributes:
+        width: along x; of a round bed its diameter.
+        depth: along y.
+        height: how high the nozzle goes.
+        origin: where x = y = 0 lies, in the lower left corner or in the middle.
+        shape: "rectangle" or "round"; None where a profile does not say.
+        excluded: rectangles [[x, y], [x, y]] between two corners in which nothing is printed.
+    """
 
     width: _Length
     depth: _Length
     height: _Length
     origin: Literal["corner", "centre"] = "corner"
+    shape: Literal["rectangle", "round"] | None = None
+    excluded: list[_Box] = []
 
     @property
     def low(self) -> tuple[float, float]:
@@ -53,6 +71,14 @@ class Bed(_Table):
     def high(self) -> tuple[float, float]:
         """The corner with the greatest x and y, mm."""
         return self.low[0] + self.width, self.low[1] + self.depth
+
+
+class Reach(_Table):
+    """Where start and end code may move, from and to (mm); None: as far as the bed."""
+
+    x: _Place | None = None
+    y: _Place | None = None
+    z: _Place | None = None
 
 
 class Extruder(_Table):
@@ -109,11 +135,31 @@ class Code(_Table):
 
 
 class Printer(_Table):
-    """A printer."""
+    """A printer.
+
+    Attributes:
+        name: by which it is chosen.
+        title: by which people know it.
+        firmware: which dialect its code is written in.
+        sources: documents and source files that the profile follows.
+        tried: who has printed with this profile, and when; empty where nobody has.
+        bed: what can be printed on.
+        reach: where code may move beyond the bed.
+        extruder: filament and how it is counted.
+        temperature: limits.
+        motion: how fast it moves and accelerates.
+        heating: how fast it warms up.
+        print: settings that override those of the material.
+        code: before and after the print.
+    """
 
     name: Annotated[str, Field(min_length=1, max_length=80)]
     title: Annotated[str, Field(min_length=1, max_length=200)]
+    firmware: Firmware = "marlin"
+    sources: list[str] = []
+    tried: str = ""
     bed: Bed
+    reach: Reach = Reach()
     extruder: Extruder = Extruder()
     temperature: Temperatures
     motion: Motion

@@ -158,6 +158,12 @@ class Print(_Data):
     retraction_speed: Positive
     fan_first_layer: bool
     fan: bool
+    acceleration: Positive = 1000.0  # mm/s2, while printing
+    corner_speed: Positive = 8.0  # mm/s, at a right angle
+    first_layer_speed: Positive = 1200.0
+    first_layer_height: NotNegative = 0.0  # 0: as the other layers
+    first_layer_flow: Positive = 1.05  # times the flow of each role
+    brim: NotNegative = 4.0  # width; 0: none
 
 
 class Limits(_Data):
