@@ -1,22 +1,26 @@
 """Prints of designs: the G-code, the toolpath to draw, and what both take."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from simulearn.errors import InputError
-from simulearn.fabricate import Job, load_printer, prepare, printers, toolpath_to_dict
-from simulearn.grid import grid_from_dict
+from simulearn.fabricate import Job, Printer, prepare, settings_of, toolpath_to_dict
+from simulearn.grid import Grid, grid_from_dict
+from simulearn.material import load_material
 from simulearn.studio.bodies import GridBody, JsonRoute, json_response
 from simulearn.studio.downloads import attachment, safe_stem
 from simulearn.studio.problems import MessageBody
 from simulearn.studio.routes.designs import BUSY, check_size
+from simulearn.studio.routes.printers import chosen
 from simulearn.studio.settings import Settings
 from simulearn.studio.turns import Turns
 
 MEDIA_TYPE = "text/x.gcode"
 MOST_GRIDS = 64  # on one bed
+MOST_STROKES = 200_000  # of a print
 ENDING = ".gcode"
 TEXT: dict[int | str, Any] = {
     200: {"content": {MEDIA_TYPE: {"schema": {"type": "string"}}}, "description": "The print."}
@@ -26,12 +30,13 @@ router = APIRouter(route_class=JsonRoute, tags=["prints"])
 
 
 class ToolpathBody(BaseModel):
-    """Designs to print together on one bed, and the name of the printer."""
+    """Designs to print together on one bed, and the printer: its name or its profile."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
 
     grids: Annotated[list[GridBody], Field(min_length=1, max_length=MOST_GRIDS)]
-    printer: str
+    printer: Annotated[str | None, Field(description="the name of one")] = None
+    profile: Annotated[str | None, Field(description="TOML text, in place of a name")] = None
     names: Annotated[
         list[str] | None, Field(description="of the designs, for the file and its messages")
     ] = None
@@ -121,11 +126,9 @@ def _prepared(body: ToolpathBody, settings: Settings) -> Job:
     """Return the print that a request describes.
 
     Raises:
-        InputError: a design or the printer is wrong; a printer is named, never a path.
+        InputError: a design or the printer is wrong, or the print is too large.
     """
-    if body.printer not in printers():
-        text = f'printer "{body.printer}" is not known; known are {", ".join(printers())}'
-        raise InputError(text, "printer-unknown", "printer")
+    printer = chosen(body.printer, body.profile)
     names = body.names
     if names is None:
         names = [f"grid {k}" for k in range(len(body.grids))] if len(body.grids) > 1 else ["grid"]
@@ -142,4 +145,20 @@ def _prepared(body: ToolpathBody, settings: Settings) -> Job:
         if beams > settings.beams_in_all:
             text = f"the grids have more than {settings.beams_in_all} beams in all; send fewer"
             raise InputError(text, "too-large", f"grids[{k}]")
-    return prepare(grids, load_printer(body.printer), names)
+    _check_strokes(grids, printer)
+    return prepare(grids, printer, names)
+
+
+def _check_strokes(grids: Sequence[Grid], printer: Printer) -> None:
+    """Raise InputError where a profile's layers and lines are so fine that a print takes long."""
+    for k, grid in enumerate(grids):
+        material = load_material(grid.material)
+        settings, _ = settings_of(material, printer)
+        rows = material.section.width / settings.line
+        strokes = settings.layers * rows * sum(len(grid.beams) for grid in grids)
+        if strokes > MOST_STROKES:
+            text = (
+                f"the print would have about {strokes:.0f} strokes; at most {MOST_STROKES} are "
+                "made here; take thicker layers, wider lines or fewer beams"
+            )
+            raise InputError(text, "too-large", f"grids[{k}]")
