@@ -1,55 +1,27 @@
 // The tab "Print": on which printer, what the print takes, its layers, and the file to download.
 
 import { h, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
-import { sizeOf } from "../service/beads.js";
+import { prints, sizeOf } from "../service/beads.js";
 import { clock, grams, metres, number } from "../service/format.js";
 import { askPrint, downloadGcode, dropPrint, freshPrint } from "../service/printing.js";
-import { printers } from "../service/api.js";
-import { untilAnswered } from "../service/server.js";
-import { edit, state } from "../store.js";
+import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { button } from "./controls.js";
 import { facts } from "./fields.js";
 import { Layers } from "./layers.js";
 import { problemNote, Reader, warnings } from "./notes.js";
+import { PrinterChoice } from "./printer.js";
 
-const known = shallowRef(null); // printers of the server, once they are asked for
-
-async function fetchPrinters() {
-  if (known.value === null) known.value = (await untilAnswered(printers)).printers;
-}
-
-/** The choice of a printer; it is part of the document. */
-function choice() {
-  const { printer } = state.document;
-  const list = known.value ?? [];
-  const chosen = list.find(({ name }) => name === printer);
-  const choose = (event) => {
-    const next = event.target.value;
-    const label = t("panels.didPrinter", { printer: list.find(({ name }) => name === next).title });
-    edit((document) => ({ ...document, printer: next }), { label });
-  };
-  return h("div", { class: "printer" }, [
-    h("label", { class: "printer-label", for: "printer" }, t("panels.printer")),
-    h("select", { class: "select", id: "printer", value: printer, onChange: choose }, [
-      !chosen && h("option", { value: printer }, printer),
-      ...list.map(({ name, title }) => h("option", { value: name }, title)),
-    ]),
-    chosen && h("p", { class: "note numbers" }, [
-      `${t("panels.bed")} ${number(chosen.bed.width)} × ${number(chosen.bed.depth)} mm, `,
-      `${t("panels.nozzle")} ${number(chosen.nozzle, 1)} mm`,
-    ]),
-  ]);
-}
+const SAID = "untried"; // the warning that stands beside the printer already
 
 function printFacts({ facts: found, toolpath }) {
   const [width, depth, height] = sizeOf(toolpath);
   return facts([
-    [t("panels.printTime"), clock(found.seconds)],
-    [t("panels.heating"), clock(found.heating_seconds)],
-    [t("panels.filament"), `${metres(found.filament_mm)}, ${grams(found.filament_g)}`],
-    [t("panels.layersCount"), number(found.layers)],
-    [t("panels.printSize"), `${number(width)} × ${number(depth)} × ${number(height, 1)} mm`],
+    [t("print.printTime"), clock(found.seconds)],
+    [t("print.heating"), clock(found.heating_seconds)],
+    [t("print.filament"), `${metres(found.filament_mm)}, ${grams(found.filament_g)}`],
+    [t("print.layersCount"), number(found.layers)],
+    [t("print.printSize"), `${number(width)} × ${number(depth)} × ${number(height, 1)} mm`],
   ]);
 }
 
@@ -58,27 +30,25 @@ const Download = {
   setup() {
     const busy = ref(false);
     const problem = shallowRef(null);
-    const saved = ref("");
-    watch(() => state.print?.of, () => { saved.value = ""; });
     const save = async () => {
       busy.value = true;
       problem.value = null;
       try {
-        saved.value = await downloadGcode();
+        await downloadGcode();
       } catch (failure) {
         problem.value = failure;
       }
       busy.value = false;
     };
     return () => h("div", { class: "download" }, [
-      button(t(busy.value ? "panels.downloading" : "panels.download"), save, {
+      button(t(busy.value ? "print.downloading" : "print.download"), save, {
         glyph: "download", kind: "primary",
         disabled: busy.value || !freshPrint() || state.print.state !== "ready",
       }),
-      saved.value && h("p", { class: "note", role: "status" }, t("panels.downloaded", { file: saved.value })),
-      problem.value && problemNote(t("panels.downloadFailed"), problem.value),
+      problem.value && problemNote(t("print.downloadFailed"), problem.value),
       h("div", { class: "callout info" }, [h("div", [
-        h("p", [h("strong", t("panels.beforePrint"))]), h("p", t("panels.beforePrintNote")),
+        h("p", [h("strong", t("print.beforePrint"))]), h("p", t("print.beforePrintNote")),
+        prints(state.print.toolpath, "brim") && h("p", t("print.cutBrim")),
       ])]),
     ]);
   },
@@ -86,30 +56,29 @@ const Download = {
 
 export const Print = {
   setup() {
-    fetchPrinters();
     watch([() => state.document.grid, () => state.document.printer], askPrint, { immediate: true });
     onBeforeUnmount(dropPrint);
     const Read = Reader(() => (
       freshPrint() && state.print.state === "ready"
-        ? `${t("panels.printTime")} ${clock(state.print.facts.seconds)}` : ""
+        ? `${t("print.printTime")} ${clock(state.print.facts.seconds)}` : ""
     ));
     return () => {
       const { print } = state;
       const old = !freshPrint();
       return h("div", { class: "panel" }, [
-        h("section", { class: "part-section", "aria-label": t("panels.print") }, [
+        h("section", { class: "part-section", "aria-label": t("print.print") }, [
           h(Read),
-          choice(),
-          !print && h("p", { class: "note" }, t("panels.printEmpty")),
-          print?.state === "failed" && problemNote(t("panels.printFailed"), print.problem),
+          h(PrinterChoice),
+          !print && h("p", { class: "note" }, t("print.printEmpty")),
+          print?.state === "failed" && problemNote(t("print.printFailed"), print.problem),
           print && !print.facts && print.state === "asking"
-            && h("p", { class: "note", role: "status" }, t("panels.printAsking")),
+            && h("p", { class: "note", role: "status" }, t("print.printAsking")),
           print?.facts && h("div", { class: ["print-facts", { old }] }, [
-            printFacts(print), ...warnings(print.facts.warnings),
+            printFacts(print), ...warnings(print.facts.warnings.filter(({ code }) => code !== SAID)),
           ]),
         ]),
         print?.toolpath && h(Layers, { old }),
-        print?.facts && h("section", { class: "part-section", "aria-label": t("panels.download") }, [
+        print?.facts && h("section", { class: "part-section", "aria-label": t("print.download") }, [
           h(Download),
         ]),
       ]);

@@ -63,8 +63,15 @@ export async function simulate(grids, { engine = "learned", signal } = {}) {
 }
 
 export const rank = (task, signal) => post("/api/rank", task, signal);
-export const toolpath = (grids, printer, signal) => post("/api/toolpath", { grids, printer }, signal);
-export const gcode = (grids, printer, names) => post("/api/gcode", { grids, printer, names });
+
+/** Return the printer that the text of a profile describes, or the text of a printer's profile. */
+export const readProfile = (profile) => post("/api/profile", { profile });
+export const profileText = async (name) => (await request(`/api/printers/${name}`, { accept: "*/*" })).text();
+
+// A printer is a name, or { profile: text }.
+const by = (printer) => (typeof printer === "string" ? { printer } : printer);
+export const toolpath = (grids, printer, signal) => post("/api/toolpath", { grids, ...by(printer) }, signal);
+export const gcode = (grids, printer, names) => post("/api/gcode", { grids, ...by(printer), names });
 
 export const startOptimize = (task) => post("/api/optimize", task);
 export const startFea = (grids) => post("/api/fea", { grids });

@@ -5,6 +5,7 @@
 import { state } from "../store.js";
 import { gcode, toolpath } from "./api.js";
 import { fileName } from "./beads.js";
+import { download } from "./downloads.js";
 import { latest } from "./latest.js";
 
 const QUIET = 300; // ms without a change until a toolpath is asked for
@@ -74,10 +75,5 @@ export async function downloadGcode() {
   const { grid, printer, name } = state.document;
   const stem = fileName(name);
   const answer = await gcode([grid], printer, [stem]);
-  const link = globalThis.document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([answer.gcode], { type: "text/x.gcode" }));
-  link.download = `${stem}.gcode`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000); // after the download has begun
-  return link.download;
+  download(new Blob([answer.gcode], { type: "text/x.gcode" }), `${stem}.gcode`);
 }

@@ -1,13 +1,15 @@
 // A toolpath as flat ribbons of the beads' widths: plain arrays, built once, ordered by layers so
 // that a layer is a range of the triangles.
 
+/** What has a colour of its own; "upper" are active beads of the upper half. */
+export const TONES = ["skirt", "shell", "active", "passive", "joint", "upper", "brim"];
+
 const SHARPEST = 2.5; // a corner's ribbon is at most this much wider than the bead
 
 /** Return { positions, sides, tones, index, layerStart, travels, travelStart, bounds } of a toolpath
  * (`toolpath_to_dict`).
  *
- * sides: -1 at a bead's right edge, 1 at its left one; tones: the role's number, 5 for actuators of the
- * upper half; layerStart[k]: first index of layer k, with the end after the last one; travels: ends of
+ * sides: -1 at a bead's right edge, 1 at its left one; tones: numbers in `TONES`; layerStart[k]: first index of layer k, with the end after the last one; travels: ends of
  * the moves between beads, travelStart likewise by points.
  */
 export function ribbonsOf(toolpath) {
@@ -33,6 +35,7 @@ export function ribbonsOf(toolpath) {
     if (b > 0 && layerOf[b - 1] === layerOf[b])
       travels.push(...points[starts[b] - 1], z, ...points[first], z);
     const upper = role[b] === active && layerOf[b] >= layers.length / 2;
+    const tone = Math.max(0, TONES.indexOf(upper ? "upper" : roles[role[b]]));
     for (let k = first; k < end; k += 1) {
       const [nx, ny] = offset(points, first, end, k);
       const half = (toolpath.width[k < end - 1 ? k : k - 1] || 0) / 2;
@@ -40,7 +43,7 @@ export function ribbonsOf(toolpath) {
       positions.set([points[k][0] + nx * half, points[k][1] + ny * half, z], 6 * k + 3);
       sides[2 * k] = -1;
       sides[2 * k + 1] = 1;
-      tones.fill(upper ? roles.length : role[b], 2 * k, 2 * k + 2);
+      tones.fill(tone, 2 * k, 2 * k + 2);
       if (k < end - 1) {
         index.set([2 * k, 2 * k + 2, 2 * k + 1, 2 * k + 1, 2 * k + 2, 2 * k + 3], at);
         at += 6;
