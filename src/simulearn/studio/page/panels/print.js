@@ -46,10 +46,8 @@ const Download = {
         disabled: busy.value || !freshPrint() || state.print.state !== "ready",
       }),
       problem.value && problemNote(t("print.downloadFailed"), problem.value),
-      h("div", { class: "callout info" }, [h("div", [
-        h("p", [h("strong", t("print.beforePrint"))]), h("p", t("print.beforePrintNote")),
-        prints(state.print.toolpath, "brim") && h("p", t("print.cutBrim")),
-      ])]),
+      h("p", { class: "note" }, t("print.beforePrint")),
+      prints(state.print.toolpath, "brim") && h("p", { class: "note" }, t("print.cutBrim")),
     ]);
   },
 };
@@ -77,10 +75,10 @@ export const Print = {
             printFacts(print), ...warnings(print.facts.warnings.filter(({ code }) => code !== SAID)),
           ]),
         ]),
-        print?.toolpath && h(Layers, { old }),
         print?.facts && h("section", { class: "part-section", "aria-label": t("print.download") }, [
           h(Download),
         ]),
+        print?.toolpath && h(Layers, { old }),
       ]);
     };
   },
