@@ -14,6 +14,8 @@ export const repairs = {
     removeDangling: "Remove the {count} dangling beams",
     removeBeams: "Remove the {count} beams of the smaller parts",
     removeJoint: "Remove joint {joint}",
+    countFromZero: "Count the joints from 0",
+    scale: "Multiply all coordinates by {factor}",
   },
   de: {
     setActuator: "Aktor auf {percent} % setzen",
@@ -29,5 +31,7 @@ export const repairs = {
     removeDangling: "Die {count} losen Stäbe entfernen",
     removeBeams: "Die {count} Stäbe der kleineren Teile entfernen",
     removeJoint: "Knoten {joint} entfernen",
+    countFromZero: "Die Knoten von 0 an zählen",
+    scale: "Alle Koordinaten mit {factor} malnehmen",
   },
 };
