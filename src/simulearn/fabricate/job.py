@@ -52,7 +52,7 @@ class Job:
     @cached_property
     def durations(self) -> NDArray[np.float64]:
         """(m,) s, of each move."""
-        return durations_of(self.moves, self.printer)
+        return durations_of(self.moves, self.settings, self.printer)
 
     @cached_property
     def estimate(self) -> Estimate:

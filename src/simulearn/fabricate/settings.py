@@ -16,7 +16,7 @@ from simulearn.material.material import Print
 
 # Settings of the machine rather than of the material: a profile changes them without a warning.
 HARMLESS = {"speed_skirt", "speed_travel", "speed_z", "skirt_distance", "retraction"}
-HARMLESS |= {"retraction_speed"}
+HARMLESS |= {"retraction_speed", "brim"}
 UNITS = {
     "layer": " mm",
     "line_width": " mm",
@@ -25,6 +25,11 @@ UNITS = {
     "bed": " C",
     "speed_fill": " mm/min",
     "speed_shell": " mm/min",
+    "acceleration": " mm/s2",
+    "corner_speed": " mm/s",
+    "first_layer_speed": " mm/min",
+    "first_layer_height": " mm",
+    "brim": " mm",
 }
 # What any printer may do; a value beyond is a mistake in writing.
 RANGES = {
@@ -46,6 +51,12 @@ RANGES = {
     "skirt_distance": (0.0, 500.0),
     "retraction": (0.0, 20.0),
     "retraction_speed": (10.0, 60000.0),
+    "acceleration": (10.0, 100000.0),
+    "corner_speed": (0.1, 1000.0),
+    "first_layer_speed": (30.0, 60000.0),
+    "first_layer_height": (0.0, 2.0),
+    "first_layer_flow": (0.2, 3.0),
+    "brim": (0.0, 100.0),
 }
 WIDEST = 2.0  # a bead wider than so many nozzles tears
 ROUNDING = 1e-6
@@ -53,7 +64,7 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a toolpath and its file are made with; mm, mm/min, C.
+    """Everything that a toolpath and its file are made with; mm, mm/min, mm/s2, C.
 
     Attributes:
         layers: number of layers; the lower half of them is the bottom half of a beam.
@@ -68,7 +79,10 @@ class Settings:
         bed: of the bed, 0 being off.
         speed: of the beads, by role.
         flow: extruded volume over that of a rectangular bead, by role.
+        acceleration: while printing: the material's, or the machine's where that is lower.
+        corner_speed: at which a right angle is taken, likewise, mm/s.
         travel: speed of travels.
+        acceleration_travel: of travels, the machine's.
         speed_z: of lifts.
         lift: how far the nozzle lifts to travel.
         retraction: how much filament is drawn back to travel.
@@ -91,7 +105,10 @@ class Settings:
     bed: float
     speed: dict[str, float]
     flow: dict[str, float]
+    acceleration: float
+    corner_speed: float
     travel: float
+    acceleration_travel: float
     speed_z: float
     lift: float
     retraction: float
@@ -186,7 +203,10 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
             bed=ours.bed,
             speed=speed | dict.fromkeys((ACTIVE, PASSIVE, JOINT), ours.speed_fill),
             flow=flow | {PASSIVE: ours.flow_passive, JOINT: ours.flow_joint},
+            acceleration=min(ours.acceleration, printer.motion.acceleration),
+            corner_speed=min(ours.corner_speed, printer.motion.corner_speed),
             travel=min(ours.speed_travel, printer.motion.speed),
+            acceleration_travel=printer.motion.acceleration_travel,
             speed_z=min(ours.speed_z, printer.motion.speed_z),
             lift=printer.extruder.lift,
             retraction=ours.retraction,
