@@ -38,8 +38,10 @@ def test_a_suggestion_is_shown_under_the_pointer_only(aimed, page):
     expect(cards.first.locator("img")).to_be_visible()
     before = do.document(page)
     cards.first.hover()
-    label = do.shape(page).locator(".shape-label, .shape-preview").or_(
-        do.shape(page).get_by_text(re.compile("^(Move joint|Actuator)"))
+    label = (
+        do.shape(page)
+        .locator(".shape-label, .shape-preview")
+        .or_(do.shape(page).get_by_text(re.compile("^(Move joint|Actuator)")))
     )
     expect(label.first).to_be_visible()
     aimed.get_by_role("heading", name="Suggestions").hover()

@@ -1,8 +1,10 @@
 """Prints: the same file and facts as the command line makes, and toolpaths to draw."""
 
 import json
+from io import BytesIO
 from time import perf_counter
 from urllib.parse import unquote
+from zipfile import ZipFile
 
 import pytest
 from asking import Client, problem
@@ -43,6 +45,28 @@ def test_the_file_alone(client):
     assert answer.text.startswith(";")
     header = answer.headers["content-disposition"]
     assert unquote(header.partition("UTF-8''")[2]) == "Sättel-日本.gcode"
+
+
+BAMBU = """
+base = "bambu-x1"
+title = "Bambu Lab X1 Carbon"
+firmware = "bambu"
+"""
+
+
+def test_a_package_for_a_bambu_lab_printer(client):
+    body = {"grids": [SMALL], "profile": BAMBU, "names": ["small"]}
+    answer = client.post("/api/gcode", body | {"format": "gcode.3mf"})
+    assert answer.headers["content-type"] == "model/3mf"
+    assert 'filename="small.gcode.3mf"' in answer.headers["content-disposition"]
+    with ZipFile(BytesIO(answer.content)) as package:
+        text = package.read("Metadata/plate_1.gcode").decode()
+    assert text == client.post("/api/gcode", body).json()["gcode"]
+    assert client.post("/api/profile", {"profile": BAMBU}).json()["formats"][0] == "gcode.3mf"
+    assert client.post("/api/profile", {"profile": OWN}).json()["formats"] == ["gcode"]
+    wrong = client.post("/api/gcode", PRINT | {"format": "gcode.3mf"})
+    assert "Bambu Lab" in problem(wrong, 422)["detail"]
+    problem(client.post("/api/gcode", PRINT | {"format": "stl"}), 422, "request")
 
 
 def test_a_toolpath_with_its_facts_and_the_bed(client):

@@ -116,6 +116,7 @@ class PrinterFacts(_Answer):
     firmware: str
     sources: Annotated[list[str], Field(description="what the profile follows")]
     tried: Annotated[str, Field(description="who has printed with the profile; empty: nobody")]
+    formats: Annotated[list[str], Field(description="files that it takes, the best first")]
     bed: BedFacts
     reach: ReachFacts
     nozzle: float

@@ -7,7 +7,14 @@ from fastapi import APIRouter, Path, Request, Response
 from pydantic import BaseModel, ConfigDict
 
 from simulearn.errors import InputError
-from simulearn.fabricate import Printer, load_printer, printers, profile_text, read_profile
+from simulearn.fabricate import (
+    Printer,
+    load_printer,
+    model_number,
+    printers,
+    profile_text,
+    read_profile,
+)
 from simulearn.material import load_material
 from simulearn.studio.answers import PrinterFacts, Printers
 from simulearn.studio.bodies import JsonRoute, json_response
@@ -82,6 +89,7 @@ def facts_of(printer: Printer) -> dict[str, Any]:
         "firmware": printer.firmware,
         "sources": printer.sources,
         "tried": printer.tried,
+        "formats": _formats(printer),
         "bed": printer.bed.model_dump(mode="json"),
         "reach": printer.reach.model_dump(mode="json"),
         "nozzle": printer.print.get("nozzle", load_material(MATERIAL).print.nozzle),
@@ -89,6 +97,15 @@ def facts_of(printer: Printer) -> dict[str, Any]:
         "nozzle_most": printer.temperature.nozzle_most,
         "bed_most": printer.temperature.bed_most,
     }
+
+
+def _formats(printer: Printer) -> list[str]:
+    """Return the endings of the files that a printer takes."""
+    try:
+        model_number(printer)
+    except InputError:
+        return ["gcode"]
+    return ["gcode.3mf", "gcode"]
 
 
 @cache

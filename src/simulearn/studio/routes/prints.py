@@ -1,13 +1,22 @@
 """Prints of designs: the G-code, the toolpath to draw, and what both take."""
 
 from collections.abc import Sequence
-from typing import Annotated, Any
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from simulearn.errors import InputError
-from simulearn.fabricate import Job, Printer, prepare, settings_of, toolpath_to_dict
+from simulearn.fabricate import (
+    Job,
+    Printer,
+    prepare,
+    settings_of,
+    toolpath_to_dict,
+    write_package,
+)
 from simulearn.grid import Grid, grid_from_dict
 from simulearn.material import load_material
 from simulearn.studio.bodies import GridBody, JsonRoute, json_response
@@ -19,11 +28,18 @@ from simulearn.studio.settings import Settings
 from simulearn.studio.turns import Turns
 
 MEDIA_TYPE = "text/x.gcode"
+PACKAGE = "gcode.3mf"  # for Bambu Lab printers
+PACKAGE_TYPE = "model/3mf"
 MOST_GRIDS = 64  # on one bed
 MOST_STROKES = 200_000  # of a print
-ENDING = ".gcode"
-TEXT: dict[int | str, Any] = {
-    200: {"content": {MEDIA_TYPE: {"schema": {"type": "string"}}}, "description": "The print."}
+FILES: dict[int | str, Any] = {
+    200: {
+        "content": {
+            MEDIA_TYPE: {"schema": {"type": "string"}},
+            PACKAGE_TYPE: {"schema": {"type": "string", "format": "binary"}},
+        },
+        "description": "The print.",
+    }
 }
 
 router = APIRouter(route_class=JsonRoute, tags=["prints"])
@@ -40,6 +56,12 @@ class ToolpathBody(BaseModel):
     names: Annotated[
         list[str] | None, Field(description="of the designs, for the file and its messages")
     ] = None
+
+
+class GcodeBody(ToolpathBody):
+    """The same, and which file: G-code, or a package of it for a Bambu Lab printer."""
+
+    format: Literal["gcode", "gcode.3mf"] = "gcode"
 
 
 class PrintedGrid(BaseModel):
@@ -81,11 +103,11 @@ class ToolpathAnswer(BaseModel):
     bed: Annotated[dict[str, Any], Field(description="its size, and its low and high corner")]
 
 
-@router.post("/api/gcode", response_model=GcodeAnswer, responses=BUSY | TEXT)
-async def gcode(body: ToolpathBody, request: Request) -> Response:
+@router.post("/api/gcode", response_model=GcodeAnswer, responses=BUSY | FILES)
+async def gcode(body: GcodeBody, request: Request) -> Response:
     """Return the file that prints designs, and what the print takes.
 
-    Where the Accept header names text/x.gcode, the answer is the file alone.
+    Where the Accept header names text/x.gcode, the answer is the file alone; so is a package.
     """
     state = request.app.state
     turns: Turns = state.turns
@@ -101,17 +123,28 @@ async def toolpath(body: ToolpathBody, request: Request) -> Response:
     return await turns.run(request, lambda _: _toolpath(body, state.settings))
 
 
-def _gcode(body: ToolpathBody, settings: Settings, plain: bool) -> Response:
+def _gcode(body: GcodeBody, settings: Settings, plain: bool) -> Response:
     job = _prepared(body, settings)
     name = safe_stem("-".join(job.names) if len(job.names) < 3 else f"{len(job.names)}-grids")
-    file = f"{name}{ENDING}"
+    file = f"{name}.{body.format}"
     headers = {"Vary": "Accept"}
+    if body.format == PACKAGE:
+        headers |= attachment(file)
+        return Response(_packed(job), media_type=PACKAGE_TYPE, headers=headers)
     if plain:
         headers |= attachment(file)
         return Response(job.gcode, media_type=MEDIA_TYPE, headers=headers)
     response = json_response({"gcode": job.gcode, "file": file, **job.facts})
     response.headers.update(headers)
     return response
+
+
+def _packed(job: Job) -> bytes:
+    """Return a print as a package for a Bambu Lab printer."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / PACKAGE
+        write_package(job, path)
+        return path.read_bytes()
 
 
 def _toolpath(body: ToolpathBody, settings: Settings) -> Response:

@@ -3,7 +3,8 @@
 import { h, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
 import { prints, sizeOf } from "../service/beads.js";
 import { clock, grams, metres, number } from "../service/format.js";
-import { askPrint, downloadGcode, dropPrint, freshPrint } from "../service/printing.js";
+import { printerFacts } from "../service/printers.js";
+import { askPrint, downloadPrint, dropPrint, freshPrint } from "../service/printing.js";
 import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { button } from "./controls.js";
@@ -25,26 +26,30 @@ function printFacts({ facts: found, toolpath }) {
   ]);
 }
 
-/** The button that saves the file, and what to look at before it is printed. */
+/** The buttons that save the file, one for each kind that the printer takes, and what to do with it. */
 const Download = {
   setup() {
-    const busy = ref(false);
+    const busy = ref(null); // the format that is being written
     const problem = shallowRef(null);
-    const save = async () => {
-      busy.value = true;
+    const save = async (format) => {
+      busy.value = format;
       problem.value = null;
       try {
-        await downloadGcode();
+        await downloadPrint(format);
       } catch (failure) {
         problem.value = failure;
       }
-      busy.value = false;
+      busy.value = null;
+    };
+    const words = (format) => {
+      if (busy.value === format) return t("print.downloading");
+      return t(format === "gcode" ? "print.download" : "print.downloadPackage");
     };
     return () => h("div", { class: "download" }, [
-      button(t(busy.value ? "print.downloading" : "print.download"), save, {
-        glyph: "download", kind: "primary",
-        disabled: busy.value || !freshPrint() || state.print.state !== "ready",
-      }),
+      ...(printerFacts()?.formats ?? ["gcode"]).map((format, k) => button(words(format), () => save(format), {
+        key: format, glyph: "download", kind: k === 0 ? "primary" : "",
+        disabled: busy.value !== null || !freshPrint() || state.print.state !== "ready",
+      })),
       problem.value && problemNote(t("print.downloadFailed"), problem.value),
       h("p", { class: "note" }, t("print.beforePrint")),
       prints(state.print.toolpath, "brim") && h("p", { class: "note" }, t("print.cutBrim")),

@@ -3,7 +3,7 @@
 // "failed", problem. An older toolpath stays until the new one is there; `freshPrint` says which it is.
 
 import { state } from "../store.js";
-import { gcode, toolpath } from "./api.js";
+import { printFile, toolpath } from "./api.js";
 import { fileName } from "./beads.js";
 import { download } from "./downloads.js";
 import { latest } from "./latest.js";
@@ -70,10 +70,9 @@ export function showTravels(travels) {
   state.print = { ...state.print, travels };
 }
 
-/** Have the browser save the G-code of the current design. */
-export async function downloadGcode() {
+/** Have the browser save the file that prints the current design: "gcode" or "gcode.3mf". */
+export async function downloadPrint(format) {
   const { grid, printer, name } = state.document;
-  const stem = fileName(name);
-  const answer = await gcode([grid], printer, [stem]);
-  download(new Blob([answer.gcode], { type: "text/x.gcode" }), `${stem}.gcode`);
+  const file = await printFile([grid], printer, [fileName(name)], format);
+  download(file.blob, file.name);
 }
