@@ -53,6 +53,9 @@ def test_a_search_tells_its_error_is_stopped_and_stepped_through(aimed, page):
     before = do.document(page)
     search(aimed, 300)
     expect(aimed.get_by_text("designs tried")).to_be_visible()
+    error = aimed.locator(".search-running .measure-value")
+    first = error.inner_text()
+    expect(error).not_to_have_text(first, timeout=SLOW)  # it is found while one looks
     do.button(aimed, "Stop, keep the best").click()
     found = aimed.get_by_role("group", name="Found")
     expect(found).to_be_visible(timeout=SLOW)
@@ -62,7 +65,10 @@ def test_a_search_tells_its_error_is_stopped_and_stepped_through(aimed, page):
     expect(step).not_to_have_attribute("aria-valuetext", last)
     expect(do.shape(page).get_by_text(re.compile(r"^Step \d+ of \d+$"))).to_be_visible()
     assert do.document(page) == before
-    do.button(found, "Take this step").click()
+    expect(do.button(found, "Take this step")).to_be_enabled()
+    do.button(found, "Step on").click()
+    expect(step).to_have_attribute("aria-valuetext", last)
+    do.button(found, "Take it").click()
     do.simulated(page)
     assert do.document(page)["grid"] != before["grid"]
     do.button(page, re.compile("^Undo: search")).click()

@@ -41,6 +41,18 @@ export function repair(message, document, netLengths = {}, limits = {}) {
   return found && found.apply(document) !== document ? { values: {}, ...found } : null;
 }
 
+/** Return a repair of all actuators that are too short, or null where fewer than two are. */
+export function repairActuators(messages, document, netLengths = {}, limits = {}) {
+  const short = messages.filter(({ code }) => code === "actuator-short");
+  const found = short.map((message) => repair(message, document, netLengths, limits)).filter(Boolean);
+  if (found.length < 2) return null;
+  return {
+    label: "repairs.setActuators",
+    values: { count: found.length },
+    apply: (one) => found.reduce((next, { apply }) => apply(next), one),
+  };
+}
+
 /** Return the number in `where` and the parts {kind, number} that the message names. */
 function named({ where = "", message = "" }) {
   const found = [...message.matchAll(/\b(joint|beam)s? (\d+)(?: and (\d+))?/g)];

@@ -4,6 +4,7 @@
 import { watch } from "/libraries/vue.js";
 import { readDocument, sameGrid } from "../document/document.js";
 import { state } from "../store.js";
+import { job as question } from "./api.js";
 import { resumeCheck } from "./checking.js";
 import { resumeSearch } from "./search.js";
 
@@ -16,9 +17,19 @@ export function startResuming() {
   const stop = watch(() => state.started, () => {
     if (!state.started) return;
     stop();
-    for (const [name, job] of Object.entries(read())) RESUME[name]?.({ ...job, document: known(job.document) });
+    for (const [name, job] of Object.entries(read())) resume(name, job);
     watch(() => [state.address, state.search?.id, state.search?.state, state.fea?.id, state.fea?.state], keep);
   }, { flush: "sync" });
+}
+
+/** Follow a job; one that was done is forgotten where the server has forgotten it. */
+async function resume(name, job) {
+  try {
+    if (job.done) await question(job.id, { since: Number.MAX_SAFE_INTEGER });
+  } catch (problem) {
+    if (problem.status === 404) return;
+  }
+  RESUME[name]?.({ ...job, document: known(job.document) });
 }
 
 /** Return the jobs of the design that is open. */
@@ -44,7 +55,7 @@ function keep() {
   const jobs = {};
   for (const name of Object.keys(RESUME)) {
     const { id, state: now, document, until } = state[name] ?? {};
-    if (id && !OVER.includes(now)) jobs[name] = { id, document, until };
+    if (id && !OVER.includes(now)) jobs[name] = { id, document, until, done: now === "done" };
   }
   try {
     sessionStorage.setItem(KEY, JSON.stringify({ address: state.address, jobs }));

@@ -1,8 +1,9 @@
 // What `document/repairs.js` offers to do about a message.
 export const repairs = {
   en: {
-    setActuator: "Set the actuator to {percent} %",
-    clearActuator: "Remove the actuator",
+    setActuator: "Set beam {beam} to {percent} %",
+    clearActuator: "Remove the actuator of beam {beam}",
+    setActuators: "Mend all {count} actuators",
     merge: "Merge joints {a} and {b}",
     once: "Draw beams {a} and {b} once where they run together",
     joinBeams: "Add a joint where beams {a} and {b} cross",
@@ -18,8 +19,9 @@ export const repairs = {
     scale: "Multiply all coordinates by {factor}",
   },
   de: {
-    setActuator: "Aktor auf {percent} % setzen",
-    clearActuator: "Aktor entfernen",
+    setActuator: "Stab {beam} auf {percent} % setzen",
+    clearActuator: "Aktor von Stab {beam} entfernen",
+    setActuators: "Alle {count} Aktoren ausbessern",
     merge: "Knoten {a} und {b} verbinden",
     once: "Stäbe {a} und {b} nur einmal zeichnen, wo sie zusammenlaufen",
     joinBeams: "Knoten setzen, wo sich Stäbe {a} und {b} kreuzen",
