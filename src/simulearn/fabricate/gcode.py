@@ -19,7 +19,7 @@ from simulearn.fabricate.header import header
 from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, Moves
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
-from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
+from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
 from simulearn.files import replacing
 from simulearn.grid import Message
 
@@ -28,6 +28,7 @@ FEEDS = (PRINT, RETRACT, RESTORE)
 # The names by which viewers colour lines, as Cura writes them.
 TYPES = {
     SKIRT: "SKIRT",
+    BRIM: "SKIRT",
     SHELL: "WALL-OUTER",
     ACTIVE: "SKIN",
     PASSIVE: "FILL",
