@@ -22,7 +22,7 @@ from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, M
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
 from simulearn.fabricate.thumbnail import thumbnails
-from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
+from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
 from simulearn.files import replacing
 from simulearn.grid import Message
 from simulearn.material import Material
@@ -36,7 +36,7 @@ HIGHER = re.compile(r"G[01]\b.*Z")  # a move in z
 # The names by which viewers colour lines: as Cura writes them, as BambuStudio does.
 TYPES = {
     SKIRT: ("SKIRT", "Skirt"),
-    "brim": ("SKIRT", "Brim"),
+    BRIM: ("SKIRT", "Brim"),
     SHELL: ("WALL-OUTER", "Outer wall"),
     ACTIVE: ("SKIN", "Internal solid infill"),
     PASSIVE: ("FILL", "Sparse infill"),
