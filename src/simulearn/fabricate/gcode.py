@@ -22,7 +22,7 @@ from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, M
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
 from simulearn.fabricate.thumbnail import thumbnails
-from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
+from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
 from simulearn.files import replacing
 from simulearn.grid import Message
 from simulearn.material import Material
@@ -32,11 +32,11 @@ FEEDS = (PRINT, RETRACT, RESTORE)
 # Bambu's bed is off until a file heats it; software that checks files for its printers takes a bed
 # that is switched off before the print for a mistake.
 BED_OFF = re.compile(r"M1[49]0 S0\b")
-LIFTED = re.compile(r"^(G[01]\b[^;]*Z[^;]*?) *;? *([^;]*)$")  # a move in z, and its comment
+HIGHER = re.compile(r"G[01]\b.*Z")  # a move in z
 # The names by which viewers colour lines: as Cura writes them, as BambuStudio does.
 TYPES = {
     SKIRT: ("SKIRT", "Skirt"),
-    "brim": ("SKIRT", "Brim"),
+    BRIM: ("SKIRT", "Brim"),
     SHELL: ("WALL-OUTER", "Outer wall"),
     ACTIVE: ("SKIN", "Internal solid infill"),
     PASSIVE: ("FILL", "Sparse infill"),
@@ -136,8 +136,10 @@ def _ended(lines: Sequence[str]) -> list[str]:
 
     It takes the last Z in a file for the height of the print, unless a comment there begins with E.
     """
+    split = [line.partition(";") for line in lines]
     return [
-        re.sub(r"^(G[01]\b[^;]*Z[^;]*?) *;? *([^;]*)$", r"\1 ; End \2", x).rstrip() for x in lines
+        f"{code.rstrip()} ; End {comment.strip()}".rstrip() if HIGHER.match(code) else line
+        for line, (code, _, comment) in zip(lines, split, strict=True)
     ]
 
 
@@ -178,11 +180,7 @@ def _body(
             progress = here
             yield progress
         if bead.grid != object_now:
-            switch = list(markers.change(names, firmware, object_now, bead.grid))
-            yield from switch
-            if switch and not relative:
-                yield "G92 E0"  # firmware that leaves an object out does not count its E
-                lines.fed = 0.0
+            yield from _switch(markers.change(names, firmware, object_now, bead.grid), lines)
             object_now = bead.grid
         if bead.role != type_now:
             type_now = bead.role
@@ -199,9 +197,21 @@ def _body(
             known[key] = (text, lines.fed)
         text, lines.fed = known[key]
         yield from text
-    yield from markers.change(names, firmware, object_now, markers.NOTHING)
+    yield from _switch(markers.change(names, firmware, object_now, markers.NOTHING), lines)
     away = list(lines.write(int(first[-1]), len(moves.kind)))
     yield from _ended(away) if firmware == "reprap" else away
+
+
+def _switch(change: Iterator[str], lines: "_Lines") -> Iterator[str]:
+    """Yield what leads to another object; E then counts from zero.
+
+    Some firmware does not count the absolute E of an object that it leaves out.
+    """
+    switch = list(change)
+    yield from switch
+    if switch and not lines.relative:
+        yield "G92 E0"
+        lines.fed = 0.0
 
 
 class _Lines:

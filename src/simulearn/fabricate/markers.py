@@ -1,8 +1,8 @@
 """What a file tells the machine between beads: which layer it is on, and which object.
 
 Layers are for its display. Objects are for people who stop one of several grids while the others go
-on: everything between the start and the end of an object is then left out, travels included. Skirt
-and brim belong to no object unless a bead says so.
+on: everything between the start and the end of an object is then left out, travels included. The
+skirt belongs to no object, a brim to the grid that it holds.
 
 Sources: Klipper `klippy/extras/exclude_object.py` and `print_stats.py`; RepRapFirmware 3.5
 `GCodes5.cpp`; Prusa-Firmware-Buddy `marlin_stubs/M486.cpp` (a name stands in a line of its own);
@@ -18,7 +18,7 @@ import numpy as np
 from shapely import MultiPoint
 
 from simulearn.fabricate.printer import Firmware
-from simulearn.fabricate.toolpath import Layer, Toolpath
+from simulearn.fabricate.toolpath import BRIM, Layer, Toolpath
 
 LONGEST = 60  # letters of a name
 NOTHING = -1  # the object of what belongs to none
@@ -39,10 +39,11 @@ def object_names(names: Sequence[str]) -> list[str]:
 
 
 def outlines(path: Toolpath, count: int) -> list[list[list[float]]]:
-    """Return the convex outlines of the objects, each a list of [x, y] in mm."""
+    """Return the convex outlines of the objects without their brims, each a list of [x, y], mm."""
     found = []
+    all_beads = [b for layer in path.layers for b in layer.beads if b.role != BRIM]
     for k in range(count):
-        beads = [b.points for layer in path.layers for b in layer.beads if b.grid == k]
+        beads = [b.points for b in all_beads if b.grid == k]
         hull = MultiPoint(np.unique(np.concatenate(beads).round(3), axis=0)).convex_hull
         places = np.array(hull.exterior.coords)[:-1]
         found.append(places.round(3).tolist())

@@ -1,7 +1,7 @@
 """The small pictures in a print file: the print from above, coloured by role and half.
 
-One layer of each half is drawn, the top one over the bottom one, four times as large as the
-largest picture, and then made smaller, which smooths it. A beam's actuator lies in one half only,
+One layer of each half is drawn, the top one over the bottom one, three times as large as it will
+be, and then made smaller, which smooths it. A beam's actuator lies in one half only,
 so both halves show: the active beads of the bottom half are drawn above what is passive in the
 top half. The smaller a picture, the wider are its beams and the fewer of the shells are left.
 """
@@ -23,7 +23,7 @@ PNG: tuple[Size, ...] = ((32, 32), (48, 48), (300, 300))
 # What each firmware's own display asks for; Bambu's takes its pictures from the package.
 PRUSA_QOI: tuple[Size, ...] = ((16, 16), (313, 173), (440, 240))
 LINE = 78  # characters of a line of base64
-FINE = 4  # pixels that are drawn for each that is kept, along each side
+FINE = 3  # pixels that are drawn for each that is kept, along each side
 SMALL = 64  # pixels; below, beams are drawn as bare lines of at least THICK pixels
 THICK = 2.4
 MARGIN = 0.04
