@@ -75,6 +75,10 @@ def test_a_toolpath_with_its_facts_and_the_bed(client):
     assert len(body["layers"]) == body["print"]["layers"]
     assert body["starts"][-1] == len(body["points"]) == len(body["width"])
     assert (body["bed"]["low"], body["bed"]["high"]) == ([0, 0], [220, 220])
+    assert len(body["drawn"]) == len(body["role"])
+    assert not body["drawn"][0]
+    assert 0 < sum(body["drawn"]) < len(body["drawn"])
+    assert body["print"]["brim"] == (body["roles"].index("brim") in body["role"])
     (x0, y0), (x1, y1) = body["print"]["bounds_mm"]
     assert 0 <= x0 < x1 <= 220
     assert 0 <= y0 < y1 <= 220

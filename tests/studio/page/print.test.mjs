@@ -2,14 +2,14 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fileName, lengthsOf, prints, sizeOf } from "../../../src/simulearn/studio/page/service/beads.js";
+import { fileName, lengthsOf, sizeOf } from "../../../src/simulearn/studio/page/service/beads.js";
 import { bedLines } from "../../../src/simulearn/studio/page/shape/bed.js";
 import { ribbonsOf, TONES } from "../../../src/simulearn/studio/page/shape/ribbons.js";
 
 const PATH = { // a skirt and a square on the first layer, a line on the second
   roles: ["skirt", "shell", "active", "passive", "joint", "brim"],
   layers: [{ z: 0.25 }, { z: 0.5 }],
-  layer_of: [0, 0, 1], role: [0, 1, 3], starts: [0, 2, 7, 9],
+  layer_of: [0, 0, 1], role: [0, 1, 3], drawn: [false, false, false], starts: [0, 2, 7, 9],
   points: [[-50, -50], [150, -50], [0, 0], [60, 0], [60, 80], [0, 80], [0, 0], [0, 0], [3, 4]],
   width: [0.5, 0, 0.5, 0.5, 0.5, 0.5, 0, 0.5, 0],
 };
@@ -24,10 +24,14 @@ test("the size of a print is without its skirt and with the width of its beads",
   assert.deepEqual(sizeOf(PATH), [60.5, 80.5, 0.5]);
 });
 
-test("a brim is no part of the size, and is known to be there", () => {
-  const brim = { ...PATH, role: [5, 1, 3] };
-  assert.deepEqual(sizeOf(brim), [60.5, 80.5, 0.5]);
-  assert.deepEqual([prints(PATH, "brim"), prints(brim, "brim")], [false, true]);
+test("a brim is no part of the size", () => {
+  assert.deepEqual(sizeOf({ ...PATH, role: [5, 1, 3] }), [60.5, 80.5, 0.5]);
+});
+
+test("travels with filament drawn back are told from the others, layer by layer", () => {
+  const { travels } = ribbonsOf({ ...PATH, drawn: [false, true, false] });
+  assert.deepEqual(travels.drawn, { points: [150, -50, 0.25, 0, 0, 0.25], start: [0, 2, 2] });
+  assert.deepEqual(travels.kept, { points: [], start: [0, 0, 0] });
 });
 
 test("every role has a tone, active beads of the upper half one of their own", () => {

@@ -5,6 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -17,6 +18,7 @@ from simulearn.fabricate import (
     toolpath_to_dict,
     write_package,
 )
+from simulearn.fabricate.moves import RESTORE
 from simulearn.grid import Grid, grid_from_dict
 from simulearn.material import load_material
 from simulearn.studio.bodies import GridBody, JsonRoute, json_response
@@ -84,6 +86,8 @@ class PrintFacts(BaseModel):
     filament_mm: float
     filament_cm3: float
     filament_g: float
+    part_g: Annotated[float, Field(description="of the grids, without skirt and brim")]
+    brim: Annotated[bool, Field(description="whether there is one, to be cut off before the bath")]
     warnings: list[MessageBody]
 
 
@@ -100,7 +104,11 @@ class ToolpathAnswer(BaseModel):
     model_config = ConfigDict(extra="allow")
 
     print: PrintFacts
-    bed: Annotated[dict[str, Any], Field(description="its size, and its low and high corner")]
+    bed: Annotated[dict[str, Any], Field(description="as a printer's, and its low and high corner")]
+    drawn: Annotated[
+        list[bool],
+        Field(description="of each bead, whether filament is drawn back on the way to it"),
+    ]
 
 
 @router.post("/api/gcode", response_model=GcodeAnswer, responses=BUSY | FILES)
@@ -151,8 +159,10 @@ def _toolpath(body: ToolpathBody, settings: Settings) -> Response:
     job = _prepared(body, settings)
     bed = job.printer.bed
     corners = {"low": list(bed.low), "high": list(bed.high)}
-    more = {"print": job.facts, "bed": bed.model_dump() | corners}
-    return json_response(toolpath_to_dict(job.path) | more)
+    path = toolpath_to_dict(job.path)
+    drawn = np.isin(np.arange(len(path["role"])), job.moves.bead[job.moves.kind == RESTORE])
+    more = {"print": job.facts, "bed": bed.model_dump() | corners, "drawn": drawn.tolist()}
+    return json_response(path | more)
 
 
 def _prepared(body: ToolpathBody, settings: Settings) -> Job:

@@ -47,6 +47,9 @@ export const Layers = {
             onChange: (event) => showTravels(event.target.checked),
           }), t("print.travels"),
         ]),
+        travels && h("ul", { class: "legend travels" }, ["drawn", "kept"].map((kind) => h("li", { key: kind }, [
+          h("span", { class: ["travel", kind], "aria-hidden": "true" }), h("span", t(`print.travel_${kind}`)),
+        ]))),
         h("h3", t("print.legend")),
         h("ul", { class: "legend" }, toolpath.roles.map((role) => h("li", {
           key: role, class: { none: length(role) === 0 },

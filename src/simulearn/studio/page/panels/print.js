@@ -1,7 +1,7 @@
 // The tab "Print": on which printer, what the print takes, its layers, and the file to download.
 
 import { h, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
-import { prints, sizeOf } from "../service/beads.js";
+import { sizeOf } from "../service/beads.js";
 import { clock, grams, metres, number } from "../service/format.js";
 import { printerFacts } from "../service/printers.js";
 import { askPrint, downloadPrint, dropPrint, freshPrint } from "../service/printing.js";
@@ -21,6 +21,7 @@ function printFacts({ facts: found, toolpath }) {
     [t("print.printTime"), clock(found.seconds)],
     [t("print.heating"), clock(found.heating_seconds)],
     [t("print.filament"), `${metres(found.filament_mm)}, ${grams(found.filament_g)}`],
+    [t("print.partMass"), grams(found.part_g)],
     [t("print.layersCount"), number(found.layers)],
     [t("print.printSize"), `${number(width)} × ${number(depth)} × ${number(height, 1)} mm`],
   ]);
@@ -52,7 +53,7 @@ const Download = {
       })),
       problem.value && problemNote(t("print.downloadFailed"), problem.value),
       h("p", { class: "note" }, t("print.beforePrint")),
-      prints(state.print.toolpath, "brim") && h("p", { class: "note" }, t("print.cutBrim")),
+      state.print.facts.brim && h("p", { class: "note" }, t("print.cutBrim")),
     ]);
   },
 };

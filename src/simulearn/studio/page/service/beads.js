@@ -20,11 +20,6 @@ export function lengthsOf(path, layer) {
 
 const AROUND = ["skirt", "brim"]; // what is no part of the grid
 
-/** Return whether a role is printed anywhere. */
-export function prints(path, role) {
-  return path.role.includes(path.roles.indexOf(role));
-}
-
 /** Return the size of what is printed, without skirt and brim: [width, depth, height] in mm. */
 export function sizeOf(path) {
   const low = [Infinity, Infinity];

@@ -40,10 +40,12 @@ export function createPrint() {
   });
   const materials = [material(FADED.light), material(0)];
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), materials);
-  const travelMaterial = new THREE.LineDashedMaterial({
-    dashSize: 1.6, gapSize: 1.2, transparent: true, opacity: 0.8, // mm
-  });
-  const travels = new THREE.LineSegments(new THREE.BufferGeometry(), travelMaterial);
+  const travelMaterials = { // dashed where filament is drawn back
+    drawn: new THREE.LineDashedMaterial({ dashSize: 1.6, gapSize: 1.2, transparent: true, opacity: 0.8 }), // mm
+    kept: new THREE.LineBasicMaterial({ transparent: true, opacity: 0.8 }),
+  };
+  const travels = Object.entries(travelMaterials).map(([kind, one]) => (
+    { kind, lines: new THREE.LineSegments(new THREE.BufferGeometry(), one) }));
   const bedMaterial = new THREE.LineBasicMaterial();
   const cellMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.4 });
   const bed = new THREE.LineSegments(new THREE.BufferGeometry(), bedMaterial);
@@ -51,7 +53,7 @@ export function createPrint() {
   const zoneMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
   const zones = new THREE.LineSegments(new THREE.BufferGeometry(), zoneMaterial);
   const group = new THREE.Group();
-  group.add(mesh, travels, bed, cells, zones);
+  group.add(mesh, ...travels.map(({ lines }) => lines), bed, cells, zones);
   for (const one of group.children) one.frustumCulled = false;
   let [ribbons, path] = [null, null];
 
@@ -79,8 +81,10 @@ export function createPrint() {
       mesh.geometry.setAttribute("side", new THREE.BufferAttribute(ribbons.sides, 1));
       mesh.geometry.setAttribute("tone", new THREE.BufferAttribute(ribbons.tones, 1));
       mesh.geometry.setIndex(new THREE.BufferAttribute(ribbons.index, 1));
-      replace(travels, ribbons.travels);
-      travels.computeLineDistances();
+      for (const { kind, lines } of travels) {
+        replace(lines, ribbons.travels[kind].points);
+        lines.computeLineDistances();
+      }
       for (const one of [bed, cells, zones]) one.visible = box !== null;
       if (box) buildBed(box);
     },
@@ -92,21 +96,24 @@ export function createPrint() {
       mesh.geometry.clearGroups();
       mesh.geometry.addGroup(0, from, 0);
       mesh.geometry.addGroup(from, to - from, 1);
-      travels.visible = withTravels;
-      const [first, end] = [ribbons.travelStart[k], ribbons.travelStart[k + 1]];
-      travels.geometry.setDrawRange(first, end - first);
+      for (const { kind, lines } of travels) {
+        lines.visible = withTravels;
+        const [first, end] = ribbons.travels[kind].start.slice(k, k + 2);
+        lines.geometry.setDrawRange(first, end - first);
+      }
     },
     setTheme(theme) {
       const mix = (a, b, t) => a.map((x, k) => x + t * (b[k] - x));
       const { beam, joint, text, bottom, top, canvas: back } = theme;
       const colours = { // as in style/panels.css
         skirt: mix(beam, back, 0.4), shell: mix(joint, text, 0.45), active: bottom, passive: beam, joint,
-        upper: top, brim: mix(theme.target, back, 0.4),
+        upper: top, brim: theme.brim,
       };
       TONES.forEach((tone, k) => palette[k].fromArray(colours[tone]));
       canvas.fromArray(theme.canvas);
       materials[0].uniforms.faded.value = theme.dark ? FADED.dark : FADED.light;
-      travelMaterial.color = plain(theme.accent);
+      travelMaterials.drawn.color = plain(theme.accent);
+      travelMaterials.kept.color = plain(theme.textSoft);
       bedMaterial.color = plain(theme.lineStrong);
       cellMaterial.color = plain(theme.line);
       zoneMaterial.color = plain(theme.error);
@@ -121,7 +128,7 @@ export function createPrint() {
     },
     dispose() {
       for (const { geometry } of group.children) geometry.dispose();
-      for (const one of [...materials, travelMaterial, bedMaterial, cellMaterial, zoneMaterial]) one.dispose();
+      for (const one of [...materials, ...Object.values(travelMaterials), bedMaterial, cellMaterial, zoneMaterial]) one.dispose();
     },
   };
 }
