@@ -1,8 +1,11 @@
 """The tab Print: what is known of a printer, a profile of one's own, layers and the file."""
 
+import io
 import re
 
+import numpy as np
 import pytest
+from PIL import Image
 from playwright.sync_api import expect
 
 import gestures as do
@@ -117,6 +120,30 @@ def test_a_profile_to_begin_from_is_saved(printing, page):
     expect(chosen).to_have_text(re.compile(r"\(own profile\)$"))
 
 
+def red(locator):
+    """Return the columns of a picture, from 0 to 1, that have the colour of empty zones."""
+    picture = Image.open(io.BytesIO(locator.screenshot())).convert("RGB")
+    r, g, b = np.moveaxis(np.asarray(picture, float), 2, 0)
+    columns = np.flatnonzero(((r - g > 40) & (abs(g - b) < 30)).sum(axis=0) > 5)
+    places = columns / picture.width
+    return places[places < 0.9]  # beyond is the mark of the axes
+
+
+def test_a_bed_that_lies_elsewhere_comes_into_view(printing, page):
+    view = page.get_by_role("application", name="Shape in space").locator("canvas")
+    assert len(red(view)) == 0
+    both = OWN.replace(b"[-60.0, -60.0]]]", b"[-60.0, -60.0]], [[60.0, 60.0], [90.0, 90.0]]]")
+    open_profile(printing, both)
+    expect(printing.get_by_text("2 zones of the bed stay empty.")).to_be_visible()
+    expect(do.button(printing, "Download G-code")).to_be_enabled()
+    do.button(page.locator(".notice"), "Close").click()
+    expect(page.locator(".notice")).to_be_hidden()
+    page.wait_for_timeout(1000)  # until the view has come to rest
+    columns = red(view)
+    assert columns.min() < 0.35  # the zone at the left
+    assert columns.max() > 0.6  # and that at the right
+
+
 def test_layers_and_roles(printing):
     layer = printing.get_by_role("slider", name="Layer")
     layer.fill("1")
@@ -126,3 +153,6 @@ def test_layers_and_roles(printing):
     printing.get_by_role("switch", name="Show travels").check()
     layer.press("ArrowRight")
     expect(roles).to_contain_text("–")
+    expect(printing.get_by_text("with filament drawn back: out of the part")).to_be_visible()
+    expect(printing.get_by_text("Cut the brim off before the bath")).to_be_visible()
+    expect(printing.get_by_role("listitem").filter(has_text="Brim")).to_be_visible()

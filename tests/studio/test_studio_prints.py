@@ -169,8 +169,9 @@ def test_a_profile_is_read_and_its_printer_described(client):
         ("x = " + "9" * 5000, "profile"),
         ("x = " + "[" * 60_000, "profile"),
         ("x" + ".x" * 30_000 + " = 1", "line 1"),
-        ('base = "voron"\nbed' + ".width" * 900 + " = 1", "bed.width"),
+        ('base = "voron"\nbed' + ".width" * 250 + " = 1", "bed.width"),
         ("# " + "x" * 2**16, "profile"),
+        ("[" + "x." * 250 + "x]\n" + "".join(f"{k:x} = 1\n" for k in range(6500)), "name"),
     ],
 )
 def test_what_is_no_profile_says_where(client, text, where):

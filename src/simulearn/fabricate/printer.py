@@ -28,7 +28,7 @@ from simulearn.material.material import Print
 HERE = Path(__file__).parent / "printers"
 MOST_BASES = 8
 MOST_TEXT = 2**16  # characters of a profile that anybody may send
-MOST_DOTS = 1000  # on one line of it
+MOST_DOTS = 300  # on one line of it
 
 _Coordinate = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
 _Place = Annotated[tuple[_Coordinate, _Coordinate], Strict(strict=False)]  # TOML has lists
