@@ -20,9 +20,9 @@ from simulearn.files import replacing
 from simulearn.grid import Grid, outline
 from simulearn.interop.body import body
 from simulearn.inverse.goals import Goals
+from simulearn.palette import BEADS
 from simulearn.schedule import SCHEDULE
 from simulearn.show import style
-from simulearn.show.toolpath import COLOURS
 from simulearn.simulate import Result
 
 Array = NDArray[np.float64]
@@ -180,7 +180,7 @@ def _toolpath(file: "_File", job: Job, grids: Sequence[int], turn: Array, shift:
                 places = np.c_[bead.points @ turn.T, np.full(len(bead.points), layer.z)] + shift
                 more = {"layer": f"{k + 1}", "height": f"{layer.height:g}"}
                 more |= {"width": f"{bead.widths.mean():.3g}", "speed": f"{bead.speed:g}"}
-                colour = COLOURS.get(bead.role, ACTIVE)
+                colour = BEADS.get(bead.role, ACTIVE)
                 file.line(f"toolpath::{bead.role}", places, bead.part, colour, more)
 
 
