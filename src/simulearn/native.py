@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import llvmlite
 import numba
@@ -75,7 +75,7 @@ class _Place:
 
 
 class _Placed(CompileResultCacheImpl):
-    _locator_classes: ClassVar = [_Place]
+    _locator_classes = [_Place]  # noqa: RUF012  (of the base class, too)
 
 
 class _Kernels(FunctionCache):
