@@ -94,6 +94,7 @@ def check_prusa(says, job):
     assert says["layer_height"] == job.settings.layer
     assert says["max_layer_z"] == pytest.approx(job.path.layers[-1].z)
     assert says["fill_density"] == "100%"
+    assert says["brim_width"] == round(job.settings.brim)
     assert says["layer_info_present"]
     assert says["normal_percent_present"]
     assert says["normal_left_present"]
