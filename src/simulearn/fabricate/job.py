@@ -116,6 +116,8 @@ class Job:
             self.estimate,
             self.settings,
             self.printer,
+            self.material,
+            self.names,
             notes,
             self.warnings,
         )
