@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from simulearn.errors import ComputationError
 from simulearn.fabricate import markers
 from simulearn.fabricate.around import after, before, modes
-from simulearn.fabricate.code import Frame, filled
+from simulearn.fabricate.code import Frame, end_code, start_code
 from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.header import footer, header
 from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, Moves
@@ -80,13 +80,13 @@ def gcode(
         low=tuple(bounds[0].tolist()),
         high=tuple(bounds[1].tolist()),
         last=tuple(moves.places[-1].tolist()),
+        height=path.layers[-1].z,
     )
     firmware = printer.firmware
-    body = list(_body(path, moves, durations, settings, printer, names))
-    end = [*after(printer), *filled(printer, settings, frame, "end")]
-    start = list(filled(printer, settings, frame, "start"))
+    start, machine = start_code(printer, settings, frame)
     if firmware == "bambu" and not settings.bed:
         start = [line for line in start if not BED_OFF.match(line)]
+    end = [*after(printer), *end_code(printer, settings, frame)]
     if firmware == "reprap":
         end = _ended(end)
     lines = [
@@ -95,9 +95,9 @@ def gcode(
         *modes(printer),
         *markers.definitions(path, names, firmware),
         *start,
-        *before(settings, printer),
+        *before(settings, printer, machine),
         *markers.all_layers(path, firmware),
-        *body,
+        *_body(path, moves, durations, settings, printer, names),
         *end,
         *footer(path, printer),
     ]
