@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from simulearn.errors import ComputationError
 from simulearn.fabricate import markers
 from simulearn.fabricate.around import after, before, modes
-from simulearn.fabricate.code import Frame, end_code, start_code
+from simulearn.fabricate.code import Frame, filled
 from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.header import footer, header
 from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, Moves
@@ -80,7 +80,6 @@ def gcode(
         low=tuple(bounds[0].tolist()),
         high=tuple(bounds[1].tolist()),
         last=tuple(moves.places[-1].tolist()),
-        height=path.layers[-1].z,
     )
     firmware = printer.firmware
     start, machine = start_code(printer, settings, frame)
