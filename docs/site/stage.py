@@ -4,8 +4,8 @@ python docs/site/stage.py FOLDER
 
 The pages of docs/ are read on a code host, too, so they link to files outside docs/ and show
 pictures for light and dark by HTML. Here such links are led to copies of these files, pictures
-are made to follow the switch of the page, and what the program itself knows (its commands) is
-written as a page. Nothing of the result is kept in the repository.
+are made to follow the switch of the page, and what the program itself knows (its commands, its
+functions, what was measured) is written as pages. Nothing of the result is kept in the repository.
 """
 
 import argparse
@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 HERE = Path(__file__).resolve().parent
 PAGES = {"README.md": "index.md", "CHANGELOG.md": "changelog.md"}  # pages outside docs/
+MEASURED = "Each page is written by a command of the repository; `make bench` runs them all."
 COPIES = "files"  # folder of the site for files outside docs/
 
 FENCE = re.compile(r"^( *)(```+|~~~+).*?^\1\2 *$", re.M | re.S)
@@ -129,15 +130,33 @@ def stage(folder: Path, generated: dict[str, str]) -> None:
         shutil.copyfile(source, folder / place)
 
 
+def measured() -> str:
+    """Return the list of the pages of measured figures, each with the command that makes it."""
+    rows = ["| measured | by |\n| --- | --- |\n"]
+    for path in sorted((DOCS / "measured").glob("*.md")):
+        text = path.read_text(encoding="utf-8")
+        title = text.partition("\n")[0].removeprefix("# ")
+        command = re.search(r"Made by (`[^`]+`)", text)
+        rows.append(f"| [{title}]({path.name}) | {command.group(1) if command else ''} |\n")
+    return f"# Measured figures\n\n{MEASURED}\n\n{''.join(rows)}"
+
+
+def generated() -> dict[str, str]:
+    """Return the pages that have no file, by their place in the site."""
+    if str(HERE) not in sys.path:
+        sys.path.insert(0, str(HERE))
+    import commands
+    import python
+
+    return {commands.GENERATED: commands.text(), "measured/index.md": measured(), **python.pages()}
+
+
 def main() -> None:
     """Write the folder that is named on the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     folder = parser.parse_args().folder
-    sys.path.insert(0, str(HERE))
-    from commands import GENERATED, text
-
-    stage(folder, {GENERATED: text()})
+    stage(folder, generated())
 
 
 if __name__ == "__main__":
