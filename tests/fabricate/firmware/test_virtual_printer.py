@@ -114,6 +114,8 @@ def test_a_fault_in_a_good_file_is_noticed_by_every_firmware(what, line, more):
     for firmware in FIRMWARES:
         if line == "G28" and firmware == "sailfish":
             continue  # it has no place at all before M132
+        if firmware == "klipper" and more.split()[0] in ("M206", "G54", "M92"):
+            continue  # it does not know them
         assert what in kinds(firmware, after(good(firmware), line, more)), firmware
 
 
@@ -134,6 +136,8 @@ def test_a_line_that_is_missing_is_noticed(what, dropped):
         text = good(firmware)
         if firmware == "sailfish" and dropped == ["G28"]:
             dropped = ["M132 X Y Z A B"]
+        if firmware == "sailfish" and what == "factors":
+            continue  # GPX begins each file with 100
         assert what in kinds(firmware, without(text, *dropped)), firmware
 
 

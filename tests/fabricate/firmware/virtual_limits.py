@@ -46,7 +46,7 @@ def of_profile(printer, printing: float = 205.0) -> Limits:
     (x0, y0), (x1, y1) = bed.low, bed.high
     return Limits(
         printer.firmware,
-        (reach.x or (x0, x1), reach.y or (y0, y1), reach.z or (0.0, bed.height)),
+        (_both((x0, x1), reach.x), _both((y0, y1), reach.y), _both((0.0, bed.height), reach.z)),
         ((x0, y0), (x1, y1)),
         bed.shape == "round",
         tuple(bed.excluded),
@@ -56,3 +56,8 @@ def of_profile(printer, printing: float = 205.0) -> Limits:
         printer.extruder.filament,
         float(printer.print.get("temperature", printing)),
     )
+
+
+def _both(bed: tuple[float, float], reach: tuple[float, float] | None) -> tuple[float, float]:
+    """Return the span of the bed with that by which the machine reaches beyond it."""
+    return bed if reach is None else (min(bed[0], reach[0]), max(bed[1], reach[1]))

@@ -14,7 +14,7 @@ from virtual_state import AXES, HIDDEN, NEVER, State, known
 from virtual_trace import Trace
 
 RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
-UNLOADS = 20.0  # mm of filament that come out of the melt zone
+UNLOADS = 20.01  # mm of filament; more comes out of the melt zone
 JUMP = 50.0  # mm of filament in one move without a way (Klipper: max_extrude_only_distance)
 WIDEST = 4.0  # times the nozzle squared: section of a bead (Klipper: max_extrude_cross_section)
 TINY = 1e-6
@@ -139,7 +139,8 @@ class Mover:
             self.begins()
         if s.coldest is HIDDEN:
             self.trace.hidden += 1
-        elif s.coldest < self.limits.cold:
+        elif s.coldest < self.limits.cold and (fed > 0 or not self.beads):
+            # A nozzle that was just switched off is still warm enough to draw back.
             self.danger("cold", f"the nozzle may have {s.coldest:g} C")
         self.trace.fed += fed
         if known(s.back):
@@ -158,13 +159,11 @@ class Mover:
             tiny = fed * self.area <= WIDEST * self.limits.nozzle**2 * self.limits.nozzle
             if not tiny:
                 self.danger("e-jump", f"{fed:.1f} mm of filament on {away:.1f} mm")
-        if fed > 0:
+        if fed > 0 and self.printing and s.target != 0:
             self.bead(fed, z)
 
     def bead(self, fed: float, z: Any) -> None:
         x, y = self.state.place["X"], self.state.place["Y"]
-        if not self.printing:
-            return
         xa, ya = self.came
         if not (known(xa) and known(ya) and known(z) and known(x) and known(y)):
             self.danger("place", "a bead begins at a place that is not known")

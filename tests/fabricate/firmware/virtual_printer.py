@@ -30,6 +30,7 @@ STOPS_REPRAP = {"M0", "M1", "M2"}  # they end a print
 ORIGIN = {"M206", "M428", "M851", "G52", "G54", "G55", "G56", "G57", "G58", "G59"}
 ORIGIN |= {"G59.1", "G59.2", "G59.3", "G92.1", "G92.2", "G92.3", "SET_GCODE_OFFSET"}
 SCALE = {"M92", "M350"}
+OF_KLIPPER = {"M112", "M24", "SET_GCODE_OFFSET"}  # of these, what Klipper knows
 WAITS = {"M190", "M116", "M191", "M0", "M1", "M600", "M25", "M226", "G4"}
 MOVES_SOMEWHERE = {"G12", "G27", "G29", "G30", "G32", "G33", "G34", "G35", "G38", "G80", "M600"}
 MOVES_SOMEWHERE |= {"M125", "M98", "M701", "M48"}
@@ -52,6 +53,8 @@ class _Machine:
     def __init__(self, limits: Limits, before: State | None) -> None:
         self.limits, self.firmware = limits, limits.firmware
         self.state = before or State()
+        if self.firmware == "sailfish":
+            self.state.flow = self.state.speed = 100.0  # GPX reckons with them, file by file
         self.trace = Trace()
         self.danger = self.trace.danger
         self.mover = Mover(limits, self.state, self.trace)
@@ -88,6 +91,8 @@ class _Machine:
             self.heat(name == "M109", words)
         elif name in ("M140", "M190"):
             self.heat_bed(name == "M190", words)
+        elif name == "SET_HEATER_TEMPERATURE":
+            self.heat_named(command)
         elif name == "M106":
             s.fan = 255.0 if value is None else value
         elif name == "M107":
@@ -149,11 +154,11 @@ class _Machine:
         elif name in ARCS:
             self.danger("reach", "an arc; where it leads is not followed")
             s.hide_place()
-        elif name in ORIGIN:
+        elif name in ORIGIN and (firmware != "klipper" or name in OF_KLIPPER):
             self.danger("origin", f"{name} moves the origin")
-        elif name in SCALE:
+        elif name in SCALE and firmware != "klipper":
             self.danger("scale", f"{name} changes how far the machine moves")
-        elif name in STOPS or (name in STOPS_REPRAP and firmware == "reprap"):
+        elif (name in STOPS and (firmware != "klipper" or name in OF_KLIPPER)) or (name in STOPS_REPRAP and firmware == "reprap"):
             self.danger("stops", f"{name} ends the print or switches the machine off")
         elif name in MOVES_SOMEWHERE:
             s.hide_place()
@@ -164,14 +169,28 @@ class _Machine:
             if name != "G4" or pause >= 2:
                 self.wait()
 
+    def degrees(self, wait: bool, words: dict[str, float | None]) -> float | None:
+        """Return the temperature that a command names, as the firmware reads it."""
+        if self.firmware == "klipper":
+            return words.get("S") or 0.0
+        if words.get("S") is None and (wait or self.firmware == "reprap"):
+            return words.get("R")
+        return words.get("S")
+
+    def heat_named(self, command: Command) -> None:
+        """SET_HEATER_TEMPERATURE of Klipper."""
+        words = {"S": command.words.get("TARGET")}
+        if "HEATER=HEATER_BED" in command.rest.upper():
+            self.heat_bed(False, words)
+        else:
+            self.heat(False, words)
+
     def heat(self, wait: bool, words: dict[str, float | None]) -> None:
         s = self.state
         cooling = self.firmware == "klipper" or "R" in words
-        value = words.get("S") if words.get("S") is not None else words.get("R")
+        value = self.degrees(wait, words)
         if value is None:
-            if self.firmware != "klipper":
-                return
-            value = 0.0
+            return
         if value > self.limits.nozzle_most:
             self.danger("too-hot", f"{value:g} C; the nozzle bears {self.limits.nozzle_most:g}")
         s.target = value
@@ -183,7 +202,7 @@ class _Machine:
             self.wait()
 
     def heat_bed(self, wait: bool, words: dict[str, float | None]) -> None:
-        value = words.get("S") if words.get("S") is not None else words.get("R")
+        value = self.degrees(wait, words)
         if value is None:
             return
         if value > self.limits.bed_most:
