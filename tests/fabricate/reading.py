@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from gcodeparser import parse_gcode_lines
 
+ROLES = ("skirt", "brim", "shell", "active", "passive", "joint")
 COLUMNS = {key: column for column, key in enumerate("XYZEFS")}
 
 
@@ -60,7 +61,7 @@ def read(text):
     roles, parts = [], []
     for k, comment in comments.items():
         words = comment.split(", ")
-        if len(words) > 1 and words[0] in ("skirt", "shell", "active", "passive", "joint"):
+        if len(words) > 1 and words[0] in ROLES:
             beads[which == k] = 1
         if comment.startswith("LAYER:"):
             layers[which == k] = 1

@@ -97,7 +97,7 @@ def test_the_skirt_draws_near_where_the_bed_ends_or_is_left_out():
     assert (high < (250, 210)).all()
     job = prepare([make("dome", (3, 2), 79.0)], ends)  # 244.2 wide
     assert "no room for a skirt" in job.warnings[-1].message
-    assert {b.role for b in job.path.layers[0].beads} == {"shell", "active", "joint"}
+    assert {b.role for b in job.path.layers[0].beads} == {"brim", "shell", "active", "joint"}
 
 
 def test_materials_are_not_mixed(tmp_path):

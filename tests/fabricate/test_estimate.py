@@ -1,5 +1,6 @@
 """Time and filament: against closed forms, against stepping through a print, and the oracle."""
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -9,7 +10,9 @@ from hypothesis import strategies as st
 
 from simulearn.fabricate import extrusion, load_printer, prepare
 from simulearn.fabricate.estimate import _corners, _times, durations_of
+from simulearn.fabricate.settings import settings_of
 from simulearn.grid import make
+from simulearn.material import load_material
 
 
 def time_of(length, fastest, acceleration, corner=None):
@@ -81,11 +84,31 @@ def test_time_is_more_than_way_over_speed_and_tends_to_it():
     steps = np.diff(moves.places, axis=0, prepend=moves.start[None])
     length = np.linalg.norm(steps, axis=1)
     bare = float((np.where(length > 0, length, np.abs(moves.filament)) / (moves.speeds / 60)).sum())
-    motion = {"acceleration": 1e6, "acceleration_travel": 1e6, "acceleration_z": 1e6}
-    motion |= {"acceleration_e": 1e6, "corner_speed": 1000.0}
+    motion = {"acceleration_z": 1e6, "acceleration_e": 1e6}
     stiff = printer.model_copy(update={"motion": printer.motion.model_copy(update=motion)})
-    assert durations_of(moves, stiff).sum() == pytest.approx(bare, rel=2e-3)
+    settings = replace(job.settings, acceleration=1e6, acceleration_travel=1e6, corner_speed=1000.0)
+    assert durations_of(moves, settings, stiff).sum() == pytest.approx(bare, rel=2e-3)
     assert job.estimate.seconds > 1.05 * bare
+
+
+@pytest.mark.parametrize(
+    ("name", "acceleration", "corner_speed"),
+    [("ender-3", 500.0, 8.0), ("stacker-s4", 1000.0, 8.0), ("voron", 1000.0, 5.0)],
+)
+def test_a_print_accelerates_as_the_material_asks_or_as_the_machine_can(
+    name, acceleration, corner_speed
+):
+    printer = load_printer(name)
+    settings, _ = settings_of(load_material("pla-hot-water"), printer)
+    assert (settings.acceleration, settings.corner_speed) == (acceleration, corner_speed)
+    assert settings.acceleration_travel == printer.motion.acceleration_travel
+
+
+def test_a_profile_that_changes_the_acceleration_is_warned_about():
+    printer = load_printer("voron").model_copy(update={"print": {"acceleration": 2000.0}})
+    settings, warnings = settings_of(load_material("pla-hot-water"), printer)
+    assert settings.acceleration == 2000.0
+    assert any("acceleration 2000 mm/s2 instead of 1000" in m.message for m in warnings)
 
 
 def test_filament_in_three_units_and_heating_apart():

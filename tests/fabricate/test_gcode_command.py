@@ -80,7 +80,8 @@ def test_machines_get_the_facts(run, tmp_path):
     assert data["seconds"] > 3600
     assert data["heating_seconds"] > 0
     data = json.loads(run("gcode", "dome", "--printer", "ender-3", "--json")[1])
-    assert [warning["where"] for warning in data["warnings"]] == ["print.nozzle"]
+    codes = [warning["code"] for warning in data["warnings"]]
+    assert codes == ["override", "short-strokes"]
 
 
 def test_the_toolpath_as_data(run, tmp_path):

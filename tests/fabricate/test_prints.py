@@ -15,7 +15,9 @@ from simulearn.material import load_material
 
 MATERIAL = load_material("pla-hot-water")
 LINE, LAYER, OVERLAP = 0.6, 0.25, 0.18
-FLOW = {"skirt": 0.95, "shell": 0.95, "active": 0.95, "passive": 0.90, "joint": 0.93}
+FLOW = {"skirt": 0.95, "brim": 0.95, "shell": 0.95, "active": 0.95, "passive": 0.90, "joint": 0.93}
+FIRST_FLOW, FIRST_SPEED = 1.05, 1200  # of the first layer
+BESIDE = ("skirt", "brim")
 PRINTERS = ["modix-big60", "voron", "stacker-s4", "bambu-x1"]
 CHUNK = 25
 
@@ -52,9 +54,9 @@ def check_file(job):
     assert (file.places[prints, :2] <= high[:2] - LINE / 2).all()
 
     # Sixteen layers; the nozzle prints at their heights only.
-    heights = np.unique(file.places[prints, 2])
-    np.testing.assert_allclose(heights, LAYER * np.arange(1, 17))
-    np.testing.assert_allclose(file.places[prints, 2], LAYER * (file.layer[prints] + 1))
+    tops = np.array([layer.z for layer in job.path.layers])
+    np.testing.assert_allclose(np.unique(file.places[prints, 2]), tops, atol=5e-4)
+    np.testing.assert_allclose(file.places[prints, 2], tops[file.layer[prints]], atol=5e-4)
 
     # E rises along each bead: what is drawn back is drawn back between beads.
     inside = prints | ((file.fed != 0) & (file.moved > 0))
@@ -71,26 +73,41 @@ def check_file(job):
     assert starts[-1] == prints.sum()
     widths = np.concatenate([b.widths for b in beads])
     flow = np.array([FLOW[role] for role in file.roles])
-    section = widths * LAYER * flow[file.bead[prints]]
+    thick = np.array([layer.height for layer in job.path.layers])
+    first_layer = file.layer[prints] == 0
+    section = widths * thick[file.layer[prints]] * flow[file.bead[prints]]
+    section *= np.where(first_layer, FIRST_FLOW, 1.0)
     expected = np.bincount(file.bead[prints], moved[prints] * section, count)
     np.testing.assert_allclose(volume, expected, rtol=0.01)
     np.testing.assert_allclose(volume.sum(), expected.sum(), rtol=1e-4)
     assert fed[prints].sum() == pytest.approx(job.estimate.filament_mm, rel=1e-6)
 
-    # A travel is a step to the next row, or it is done lifted and with filament drawn back.
-    travels = (file.command == "G0") & (file.moved > 0)
-    far = travels & (file.moved > 2 * LINE + 1e-3)
-    after = np.nonzero(far)[0]
-    after = after[after > first]
-    layer_top = LAYER * (file.layer[after] + 1)
-    assert (file.places[after, 2] >= layer_top + settings.lift - 1e-6).all()
+    # Filament is drawn back where a travel leaves the part, and only there; it is lifted then.
+    travels = np.nonzero((file.command == "G0") & (file.moved > 0))[0]
+    travels = travels[travels > first]
     drawn = np.cumsum(np.where(prints, 0.0, fed))
-    np.testing.assert_allclose(drawn[after], -settings.retraction, atol=1e-3)
+    drawn -= settings.retraction  # what the print before this one drew back is taken back first
     assert (drawn[prints] > -1e-3).all()
-    assert far.sum() / 16 <= 3 * len(job.grids[0].beams)
+    steps = np.stack([file.places[travels - 1, :2], file.places[travels, :2]], axis=1)
+    part = shapely.buffer(shapely.union_all([shape_of(grid)[0] for grid in job.grids]), 5e-3)
+    shapely.prepare(part)
+    inside = shapely.covers(part, shapely.linestrings(steps))
+    kinds = np.array(file.roles)
+    to_brim = (kinds[file.bead[travels]] == "brim") & (file.moved[travels] < 2 * LINE)
+    back = np.abs(drawn[travels] + settings.retraction) < 1e-3
+    assert (back | (np.abs(drawn[travels]) < 1e-3)).all()
+    assert (inside | to_brim | back).all()
+    core = shapely.buffer(part, -1e-2)
+    shapely.prepare(core)
+    assert not (back & shapely.covers(core, shapely.linestrings(steps))).any()
+    above = file.places[travels, 2] - tops[file.layer[travels]]
+    assert (above[back] >= settings.lift - 1e-3).all()
+    assert (above >= -1e-3).all()
+    assert back.sum() / 16 <= 0.6 * len(beads) / 16
 
-    # Speeds are the material's.
-    shown = np.where(np.array(file.roles)[file.bead[prints]] == "skirt", 1500, 3000)
+    # Speeds are the material's; the first layer is slow.
+    shown = np.where(np.isin(kinds[file.bead[prints]], BESIDE), 1500, 3000)
+    shown = np.where(first_layer, np.minimum(shown, FIRST_SPEED), shown)
     assert (file.speed[prints] == shown).all()
 
 
@@ -169,7 +186,7 @@ def check_cover(job, kinds, hollows=0.02):
     size = shapely.area(whole)
     for k in kinds:
         layer = job.path.layers[k]
-        beads = [bead for bead in layer.beads if bead.role != "skirt"]
+        beads = [bead for bead in layer.beads if bead.role not in BESIDE]
         pieces = np.concatenate([np.stack([b.points[:-1], b.points[1:]], 1) for b in beads])
         widths = np.concatenate([b.widths for b in beads])
         strips = shapely.buffer(shapely.linestrings(pieces), widths / 2, cap_style="square")
@@ -181,7 +198,7 @@ def check_cover(job, kinds, hollows=0.02):
         assert shapely.covers(shapely.buffer(whole, -LINE / 2 + 0.01), centres)
         area = sum(float(b.lengths @ b.widths) for b in beads)
         assert size * 0.995 < area < size * 1.06  # the rest is the overlap of strokes with shells
-        check_volume(layer, size)
+        check_volume(layer, size, FIRST_FLOW if k == 0 else 1.0)
 
 
 def check_cover_by_points(job, k, count=800):
@@ -193,7 +210,7 @@ def check_cover_by_points(job, k, count=800):
     points = shapely.points(random(low, high, (8 * count, 2)))
     shapely.prepare(whole)
     points = points[shapely.contains(whole, points)]
-    beads = [bead for bead in job.path.layers[k].beads if bead.role != "skirt"]
+    beads = [bead for bead in job.path.layers[k].beads if bead.role not in BESIDE]
     pieces = np.concatenate([np.stack([b.points[:-1], b.points[1:]], 1) for b in beads])
     widths = np.concatenate([b.widths for b in beads])
     lines = shapely.linestrings(pieces)
@@ -201,14 +218,14 @@ def check_cover_by_points(job, k, count=800):
     near = shapely.distance(points[point], lines[line]) <= widths[line] / 2 + 1e-3
     assert len(points) > count / 4
     assert len(np.unique(point[near])) > 0.985 * len(points)  # a bead's ends are taken as round
-    check_volume(job.path.layers[k], shapely.area(whole))
+    check_volume(job.path.layers[k], shapely.area(whole), FIRST_FLOW if k == 0 else 1.0)
 
 
-def check_volume(layer, size):
+def check_volume(layer, size, first=1.0):
     """Check that a layer's volume is its area by its height by the flow, but for overlaps."""
-    beads = [bead for bead in layer.beads if bead.role != "skirt"]
+    beads = [bead for bead in layer.beads if bead.role not in BESIDE]
     volume = sum(float(b.lengths @ b.widths) * b.flow for b in beads) * LAYER
-    assert 0.90 * size * LAYER < volume < 0.95 * 1.06 * size * LAYER
+    assert 0.90 * first * size * LAYER < volume < 0.95 * 1.06 * first * size * LAYER
 
 
 @pytest.mark.parametrize("name", library())

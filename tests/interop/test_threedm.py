@@ -144,7 +144,9 @@ def test_the_toolpath_lies_on_the_flat_grid_whichever_way_it_was_printed(tmp_pat
         job = prepare([result.grid], load_printer("makerbot-2x"))
         _, objects = written(tmp_path, result, job=job)
         roles = of_roles(objects)
-        assert set(roles) == {f"toolpath::{role}" for role in ROLES}
+        used = {bead.role for layer in job.path.layers for bead in layer.beads}
+        assert used >= set(ROLES) - {"skirt"}  # there is room for one only beside the long one
+        assert set(roles) == {f"toolpath::{role}" for role in used}
         beads = sum(len(layer.beads) for layer in job.path.layers)
         assert sum(map(len, roles.values())) == beads
         flat = result.joints[0].reshape(-1, 3)

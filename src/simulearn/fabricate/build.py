@@ -1,13 +1,13 @@
 """From grids on the bed to a toolpath: shells first, then what they enclose, layer by layer.
 
-There are only four kinds of layer, two halves of two parities. Each is computed once and printed as
-often as the thickness of the beam requires.
+The strokes of a region are the same on all layers of a half and a parity. Where each begins is not:
+neither seams nor turns stack (see order.py).
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from simulearn.fabricate.order import nearest_first
@@ -15,13 +15,13 @@ from simulearn.fabricate.printer import Bed
 from simulearn.fabricate.raster import Strokes, fill
 from simulearn.fabricate.regions import Plan, Region
 from simulearn.fabricate.settings import Settings
-from simulearn.fabricate.toolpath import SHELL, SKIRT, Bead, Layer, Toolpath
+from simulearn.fabricate.skirt import Ring, beside
+from simulearn.fabricate.toolpath import BRIM, SHELL, SKIRT, Bead, Layer, Toolpath
 from simulearn.grid import Grid, Message
 from simulearn.material import Section
 
 Array = NDArray[np.float64]
 ROUND = 3  # digits of a coordinate, mm; the file's, so that E fits what is moved
-SKIRT_LEAST = 3.0  # mm; a skirt nearer to the grid is left out
 
 
 def build(
@@ -33,106 +33,135 @@ def build(
         grids: valid designs without dangling beams, where they lie on the bed.
         section: of their beams.
         settings: how they are printed.
-        bed: where the skirt must stay.
+        bed: where skirt and brim must stay.
     """
     plans = [Plan(grid, section, settings.line, settings.shells) for grid in grids]
-    skirt, messages = _skirt(plans, settings, bed)
-    filled = _Filled(plans, settings)
-    rings = [(g, ring) for g, plan in enumerate(plans) for ring in plan.rings()]
-    here = skirt[-1].points[-1] if skirt else np.array(bed.low)
-    kinds: dict[tuple[bool, bool], tuple[Bead, ...]] = {}
+    extra = beside(plans, settings, bed)
+    shells, fills = _Shells(plans, settings), _Fills(plans, settings)
+    here = np.array(bed.low)
     layers = []
-    for k in range(settings.layers):
-        kind = (k >= settings.layers // 2, k % 2 == 1)
-        if kind not in kinds:
-            shells = list(_shells(rings, settings, here))
-            fills = list(filled.beads(*kind, shells[-1].points[-1]))
-            kinds[kind] = (*shells, *fills)
-            here = fills[-1].points[-1]
-        beads = kinds[kind] if k else (*skirt, *kinds[kind])
-        layers.append(Layer((k + 1) * settings.layer, settings.layer, beads))
-    return Toolpath(tuple(layers)), messages
+    tops = np.cumsum(settings.heights).round(6).tolist()
+    for k, (z, height) in enumerate(zip(tops, settings.heights, strict=True)):
+        beads: list[Bead] = []
+        if k == 0:
+            for role, rings in ((SKIRT, extra.skirt), (BRIM, extra.brim)):
+                for ring in rings:
+                    beads.append(_ring_bead(settings, role, ring, here))
+                    here = beads[-1].points[-1]
+        beads += shells.beads(here, k == 0)
+        beads += fills.beads(k >= settings.layers // 2, k % 2 == 1, beads[-1].points[-1], k == 0)
+        here = beads[-1].points[-1]
+        layers.append(Layer(z, height, tuple(beads)))
+    return Toolpath(tuple(layers)), extra.messages
 
 
-class _Filled:
-    """The strokes of all regions of all grids, each computed once."""
+class _Shells:
+    """The closed beads along the outlines, and where they have begun on the layers so far."""
+
+    def __init__(self, plans: list[Plan], settings: Settings) -> None:
+        self.settings = settings
+        self.rings = [(g, ring[:-1]) for g, plan in enumerate(plans) for ring in plan.rings()]
+        self.seams = [_corners(points, settings.line) for _, points in self.rings]
+        self.places = [points[k] for (_, points), k in zip(self.rings, self.seams, strict=True)]
+        self.used = [np.zeros(len(k), dtype=np.int64) for k in self.seams]
+
+    def beads(self, here: Array, first: bool) -> list[Bead]:
+        """Return the beads of the next layer, in order from where the nozzle is."""
+        beads = []
+        for k, seam in nearest_first(self.places, self.places, here, self.used):
+            g, points = self.rings[k]
+            points = np.roll(points, -self.seams[k][seam], axis=0)
+            points = np.concatenate([points, points[:1]])
+            line = self.settings.line
+            beads.append(_bead(self.settings, SHELL, "outline", g, points, line, first))
+        return beads
+
+
+class _Fills:
+    """The strokes of all regions of all grids, and where they have begun on the layers so far."""
 
     def __init__(self, plans: list[Plan], settings: Settings) -> None:
         self.settings = settings
         self.joints = {
-            odd: [
-                self._fill(g, [plan.joint(j, odd)])
+            (top, odd): [
+                piece
                 for g, plan in enumerate(plans)
                 for j in range(len(plan.grid.joints))
+                for piece in self._fill(g, [plan.joint(j, top, odd)])
             ]
+            for top in (False, True)
             for odd in (False, True)
         }
-        self.beams = {}
+        self.beams: dict[bool, list[_Piece]] = {False: [], True: []}
         for g, plan in enumerate(plans):
             for b, ratio in enumerate(plan.grid.actuators.tolist()):
                 passive = self._fill(g, plan.beam(b, False))
                 active = self._fill(g, plan.beam(b, True)) if ratio else passive
-                self.beams[g, b] = {
-                    top: active if ratio and (ratio > 0) == top else passive
-                    for top in (False, True)
-                }
+                for top in (False, True):
+                    self.beams[top] += active if ratio and (ratio > 0) == top else passive
 
-    def beads(self, top: bool, odd: bool, here: Array) -> Iterator[Bead]:
-        """Yield what fills a layer of a half and a parity, in order from where the nozzle is."""
-        pieces = [
-            piece
-            for part in [*self.joints[odd], *(halves[top] for halves in self.beams.values())]
-            for piece in part
-        ]
-        tips = [strokes.tips() for *_, strokes in pieces]
-        order = nearest_first([a for a, _ in tips], [b for _, b in tips], here)
+    def beads(self, top: bool, odd: bool, here: Array, first: bool) -> Iterator[Bead]:
+        """Yield what fills the next layer, in order from where the nozzle is."""
+        pieces = [*self.joints[top, odd], *self.beams[top]]
+        tips = [piece.strokes.tips() for piece in pieces]
+        order = nearest_first(
+            [a for a, _ in tips], [b for _, b in tips], here, [piece.used for piece in pieces]
+        )
         for k, variant in order:
-            g, region, strokes = pieces[k]
-            points, widths = strokes.path(variant)
-            yield _bead(self.settings, region.role, region.part, g, points, widths)
+            piece = pieces[k]
+            points, widths = piece.strokes.path(variant)
+            role, part = piece.region.role, piece.region.part
+            yield _bead(self.settings, role, part, piece.grid, points, widths, first)
 
-    def _fill(self, g: int, regions: list[Region]) -> list[tuple[int, Region, Strokes]]:
+    def _fill(self, g: int, regions: list[Region]) -> list["_Piece"]:
         s = self.settings
         return [
-            (g, region, strokes)
+            _Piece(g, region, strokes)
             for region in regions
             for strokes in fill(region, s.line, s.overlap, s.shells * s.line, s.infill)
         ]
 
 
+class _Piece:
+    """Strokes of a region, and how often each of their variants has been printed."""
+
+    def __init__(self, grid: int, region: Region, strokes: Strokes) -> None:
+        self.grid, self.region, self.strokes = grid, region, strokes
+        self.used = np.zeros(4, dtype=np.int64)
+
+
 def _bead(
-    settings: Settings, role: str, part: str, g: int, points: Array, widths: Array | float
+    settings: Settings,
+    role: str,
+    part: str,
+    g: int,
+    points: Array,
+    widths: Array | float,
+    first: bool,
 ) -> Bead:
     points = np.round(points, ROUND) + 0.0  # no -0
     widths = np.broadcast_to(np.round(widths, 4), len(points) - 1)
     stays = np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))
-    return Bead(
-        role, part, g, points[stays], widths[stays[1:]], settings.speed[role], settings.flow[role]
-    )
+    speed, flow = settings.speed[role], settings.flow[role]
+    if first:
+        speed, flow = min(speed, settings.first_layer_speed), flow * settings.first_layer_flow
+    return Bead(role, part, g, points[stays], widths[stays[1:]], speed, flow)
 
 
-def _shells(rings: list[tuple[int, Array]], settings: Settings, here: Array) -> Iterator[Bead]:
-    """Yield the closed beads along the outlines, in order from where the nozzle is."""
-    corners = [ring[:-1] for _, ring in rings]
-    for k, first in nearest_first(corners, corners, here):
-        g, ring = rings[k]
-        points = np.roll(ring[:-1], -first, axis=0)
-        points = np.concatenate([points, points[:1]])
-        yield _bead(settings, SHELL, "outline", g, points, settings.line)
+def _ring_bead(settings: Settings, role: str, ring: Ring, here: Array) -> Bead:
+    """Return a row of skirt or brim, from its corner nearest to where the nozzle is."""
+    points = ring.points[:-1]
+    first = int(np.argmin(np.sum((points - here) ** 2, axis=1).round(6)))
+    points = np.roll(points, -first, axis=0)
+    points = np.concatenate([points, points[:1]])
+    return _bead(settings, role, role, ring.grid, points, settings.line, True)
 
 
-def _skirt(plans: list[Plan], settings: Settings, bed: Bed) -> tuple[list[Bead], list[Message]]:
-    """Return the bead that runs around everything before the first layer, as far out as fits."""
-    hull = shapely.convex_hull(shapely.union_all([plan.union for plan in plans]))
-    least, most = np.reshape(shapely.bounds(hull), (2, 2))
-    room = min((least - bed.low).min(), (bed.high - most).min()) - settings.line
-    away = min(settings.skirt_distance, float(room))
-    if away < min(SKIRT_LEAST, settings.skirt_distance):
-        text = "there is no room for a skirt on the bed; prime the nozzle by hand"
-        return [], [Message("skirt", "bed", text)]
-    ring = shapely.get_coordinates(shapely.buffer(hull, away + settings.line / 2, quad_segs=8))
-    messages = []
-    if away < settings.skirt_distance - 1e-6:
-        text = f"the skirt is {away:.1f} mm out instead of {settings.skirt_distance:g}: "
-        messages = [Message("skirt", "bed", text + "the bed ends there")]
-    return [_bead(settings, SKIRT, "skirt", -1, ring, settings.line)], messages
+def _corners(points: Array, line: float) -> NDArray[np.int64]:
+    """Return the points (n, 2) of a ring at which it may begin: of those within a row, one."""
+    steps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    ends = np.flatnonzero(steps >= line)  # a corner's last points
+    if not len(ends):
+        return np.zeros(1, dtype=np.int64)
+    begins = np.append(ends[-1] - len(points), ends) + 1
+    return np.array([((a + b - 1) // 2) % len(points) for a, b in pairwise(begins)])

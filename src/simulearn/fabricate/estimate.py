@@ -49,11 +49,11 @@ def estimate(
 
     Args:
         moves: of the print.
-        settings: filament, density and temperatures.
-        printer: how it accelerates and heats.
+        settings: filament, density, temperatures and accelerations in the plane.
+        printer: how it lifts, retracts and heats.
         durations: of each move (s), if they are known already.
     """
-    seconds = durations_of(moves, printer) if durations is None else durations
+    seconds = durations_of(moves, settings, printer) if durations is None else durations
     length = float(moves.filament[moves.kind == PRINT].sum())
     volume = length * settings.filament_area
     return Estimate(
@@ -66,7 +66,7 @@ def estimate(
     )
 
 
-def durations_of(moves: Moves, printer: Printer) -> Array:
+def durations_of(moves: Moves, settings: Settings, printer: Printer) -> Array:
     """Return how long each move takes, (m,) s."""
     motion = printer.motion
     steps = np.diff(moves.places, axis=0, prepend=moves.start[None])
@@ -75,12 +75,12 @@ def durations_of(moves: Moves, printer: Printer) -> Array:
     plane = (moves.kind == PRINT) | (moves.kind == TRAVEL)
     acceleration = np.select(
         [moves.kind == PRINT, moves.kind == TRAVEL, still],
-        [motion.acceleration, motion.acceleration_travel, motion.acceleration_e],
+        [settings.acceleration, settings.acceleration_travel, motion.acceleration_e],
         motion.acceleration_z,
     )
     length = np.where(still, np.abs(moves.filament), distance)
     fastest = np.where(plane, np.minimum(moves.speeds, motion.speed), moves.speeds) / 60
-    corner = _corners(steps, distance, plane, motion.corner_speed)
+    corner = _corners(steps, distance, plane, settings.corner_speed)
     return _times(length, fastest, acceleration, corner)
 
 

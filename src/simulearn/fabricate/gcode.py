@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from simulearn.errors import ComputationError
 from simulearn.fabricate.around import after, before, modes
-from simulearn.fabricate.code import Frame, filled
+from simulearn.fabricate.code import Frame, end_code, start_code
 from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.header import header
 from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, Moves
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
-from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
+from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
 from simulearn.files import replacing
 from simulearn.grid import Message
 
@@ -28,6 +28,7 @@ FEEDS = (PRINT, RETRACT, RESTORE)
 # The names by which viewers colour lines, as Cura writes them.
 TYPES = {
     SKIRT: "SKIRT",
+    BRIM: "SKIRT",
     SHELL: "WALL-OUTER",
     ACTIVE: "SKIN",
     PASSIVE: "FILL",
@@ -67,15 +68,18 @@ def gcode(
         low=tuple(bounds[0].tolist()),
         high=tuple(bounds[1].tolist()),
         last=tuple(moves.places[-1].tolist()),
+        height=path.layers[-1].z,
     )
+    start, machine = start_code(printer, settings, frame)
+    end = end_code(printer, settings, frame)
     lines = [
         *header(path, bounds, estimated, settings, printer, notes, warnings),
         *modes(printer),
-        *filled(printer, settings, frame, "start"),
-        *before(settings, printer),
+        *start,
+        *before(settings, printer, machine),
         *_body(path, moves, durations, settings, printer),
         *after(printer),
-        *filled(printer, settings, frame, "end"),
+        *end,
     ]
     return ("\n".join(lines) + "\n").encode("ascii", "replace").decode()
 

@@ -6,18 +6,22 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.fabricate.bed import place
 from simulearn.fabricate.build import build
+from simulearn.fabricate.code import factor_warnings
 from simulearn.fabricate.estimate import Estimate, durations_of, estimate
 from simulearn.fabricate.gcode import gcode
 from simulearn.fabricate.moves import Moves, moves_of
 from simulearn.fabricate.printer import Printer
+from simulearn.fabricate.regions import footprint
 from simulearn.fabricate.settings import Settings, settings_of
-from simulearn.fabricate.toolpath import Toolpath
-from simulearn.grid import Grid, Message, clean, validate
+from simulearn.fabricate.short_strokes import short_strokes
+from simulearn.fabricate.toolpath import BRIM, SKIRT, Toolpath
+from simulearn.grid import Grid, Message, clean, outline, validate
 from simulearn.material import Material, load_material
 
 
@@ -32,6 +36,7 @@ class Job:
         printer: on what.
         settings: how.
         path: the toolpath.
+        moves: what the machine does.
         warnings: what may be wrong with the print.
     """
 
@@ -41,23 +46,34 @@ class Job:
     printer: Printer
     settings: Settings
     path: Toolpath
+    moves: Moves
     warnings: tuple[Message, ...]
-
-    @cached_property
-    def moves(self) -> Moves:
-        """What the machine does."""
-        bed = self.printer.bed
-        return moves_of(self.path, self.settings, np.array(bed.low), bed.height)
 
     @cached_property
     def durations(self) -> NDArray[np.float64]:
         """(m,) s, of each move."""
-        return durations_of(self.moves, self.printer)
+        return durations_of(self.moves, self.settings, self.printer)
 
     @cached_property
     def estimate(self) -> Estimate:
         """Time and filament."""
         return estimate(self.moves, self.settings, self.printer, self.durations)
+
+    @property
+    def part_g(self) -> float:
+        """Mass of the grids, without skirt and brim, g."""
+        volume = sum(
+            float(bead.lengths @ bead.section) * layer.height
+            for layer in self.path.layers
+            for bead in layer.beads
+            if bead.role not in (SKIRT, BRIM)
+        )
+        return volume * self.settings.density
+
+    @property
+    def brim(self) -> bool:
+        """Whether there is a brim, which is cut off before the bath."""
+        return any(bead.role == BRIM for bead in self.path.layers[0].beads)
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -73,6 +89,8 @@ class Job:
             "layers": len(self.path.layers),
             "bounds_mm": [low, high],
             **asdict(self.estimate),
+            "part_g": self.part_g,
+            "brim": self.brim,
             "warnings": [asdict(warning) for warning in self.warnings],
         }
 
@@ -89,6 +107,9 @@ class Job:
             f"grid {k} = {name}, {len(grid.joints)} joints, {len(grid.beams)} beams"
             for k, (name, grid) in enumerate(zip(self.names, self.grids, strict=True))
         ]
+        notes.append(f"the grids weigh {self.part_g:.2f} g, without skirt and brim")
+        if self.brim:
+            notes.append("cut the brim off before the bath")
         return gcode(
             self.path,
             self.moves,
@@ -141,8 +162,11 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
             f"the print is {settings.layers * settings.layer:g} mm high; {printer.name} reaches "
             f"{printer.bed.height:g} mm"
         )
-    section = materials[0].section
+    section, bed = materials[0].section, printer.bed
     placed = place(cleaned, section, printer)
-    path, from_build = build(placed, section, settings, printer.bed)
-    warnings += overridden + from_build
-    return Job(tuple(placed), names, materials[0], printer, settings, path, tuple(warnings))
+    path, from_build = build(placed, section, settings, bed)
+    part = shapely.union_all([footprint(outline(grid, section)) for grid in placed])
+    moves = moves_of(path, part, settings, np.array(bed.low), bed.height)
+    warnings += overridden + factor_warnings(printer) + from_build
+    warnings += short_strokes(path, moves, settings, printer, materials[0])
+    return Job(tuple(placed), names, materials[0], printer, settings, path, moves, tuple(warnings))

@@ -1,22 +1,23 @@
 """A toolpath as the machine runs it: every move in one list, with the travels between the beads.
 
-On a travel the filament is drawn back and the nozzle lifted, so that it neither oozes nor scratches
-what is printed; only a step to a neighbouring row is done in place.
+Where a travel leaves the part the filament is drawn back, so that it does not ooze; see travel.py.
+At the first bead it is not drawn back, whatever the printer did before.
 """
 
 from dataclasses import dataclass
-from math import floor, hypot
+from math import floor
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from simulearn.fabricate.settings import Settings
 from simulearn.fabricate.toolpath import Toolpath
+from simulearn.fabricate.travel import travels
 
 Array = NDArray[np.float64]
 
 PRINT, TRAVEL, LIFT, RETRACT, RESTORE = range(5)
-STEP = 2.0  # lines; a travel no longer than this is done without retraction and lift
 APPROACH = 5.0  # mm above the bed on the travel to the first bead
 AWAY = 10.0  # mm above the print at its end
 DIGITS = 5  # of filament, mm
@@ -44,11 +45,14 @@ class Moves:
     start: Array
 
 
-def moves_of(path: Toolpath, settings: Settings, start: Array, highest: float) -> Moves:
+def moves_of(
+    path: Toolpath, part: shapely.Geometry, settings: Settings, start: Array, highest: float
+) -> Moves:
     """Return the moves that print a toolpath.
 
     Args:
         path: what to print.
+        part: the outline of all grids, within which travels need no retraction.
         settings: speeds, retraction and filament.
         start: (2,) where the nozzle is taken to be at first, mm.
         highest: the nozzle goes no higher, mm.
@@ -56,27 +60,30 @@ def moves_of(path: Toolpath, settings: Settings, start: Array, highest: float) -
     s = settings
     highest = floor(highest * 1000) / 1000  # a file has three digits of a place
     blocks: list[Array] = []
-    drawn = s.retraction
+    to = travels(path, part, s.line)
     x, y = start.tolist()
-    z, number, begun = 0.0, 0, False
+    z, number = 0.0, 0
     for layer in path.layers:
         height = round(layer.z, 6)
         for bead in layer.beads:
             u, v = bead.points[0].tolist()
-            away = hypot(u - x, v - y)
-            if begun and height == z and away <= STEP * s.line:
-                lead = [[TRAVEL, u, v, z, 0.0, s.travel]] if away else []
-            else:
-                above = min(highest, height + (s.lift if begun else APPROACH))
+            lead = []
+            if to.lifted[number]:
+                above = min(highest, height + (s.lift if number else APPROACH))
                 lead = [
                     [LIFT, x, y, above, 0.0, s.speed_z],
                     [TRAVEL, u, v, above, 0.0, s.travel],
                     [LIFT, u, v, height, 0.0, s.speed_z],
                 ]
-                if begun and drawn:
-                    lead.insert(0, [RETRACT, x, y, z, -drawn, s.retraction_speed])
-                    lead.append([RESTORE, u, v, height, drawn, s.retraction_speed])
-            z, begun = height, True
+                if number and s.retraction and to.drawn[number]:
+                    lead.insert(0, [RETRACT, x, y, z, -s.retraction, s.retraction_speed])
+                    lead.append([RESTORE, u, v, height, s.retraction, s.retraction_speed])
+            else:
+                if height != z:
+                    lead.append([LIFT, x, y, height, 0.0, s.speed_z])
+                if (u, v) != (x, y):
+                    lead.append([TRAVEL, u, v, height, 0.0, s.travel])
+            z = height
             block = np.empty((len(lead) + len(bead.widths), 7))
             if lead:
                 block[: len(lead), :6] = lead
@@ -92,8 +99,8 @@ def moves_of(path: Toolpath, settings: Settings, start: Array, highest: float) -
             x, y = bead.points[-1].tolist()
             number += 1
     tail = [[LIFT, x, y, min(highest, z + AWAY), 0.0, s.speed_z, number]]
-    if drawn:
-        tail.insert(0, [RETRACT, x, y, z, -drawn, s.retraction_speed, number])
+    if s.retraction:
+        tail.insert(0, [RETRACT, x, y, z, -s.retraction, s.retraction_speed, number])
     table = np.concatenate([*blocks, np.array(tail)])
     return Moves(
         table[:, 0].astype(np.int64),

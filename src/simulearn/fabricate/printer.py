@@ -72,6 +72,11 @@ class Bed(_Table):
         """The corner with the greatest x and y, mm."""
         return self.low[0] + self.width, self.low[1] + self.depth
 
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The middle of the bed, mm."""
+        return self.low[0] + self.width / 2, self.low[1] + self.depth / 2
+
 
 class Reach(_Table):
     """Where start and end code may move, from and to (mm); None: as far as the bed."""
@@ -166,6 +171,11 @@ class Printer(_Table):
     heating: Heating = Heating()
     print: dict[str, float | bool] = {}
     code: Code
+
+    @property
+    def one_acceleration(self) -> bool:
+        """Whether the firmware keeps one acceleration for prints and travels."""
+        return self.firmware in ("klipper", "bambu")
 
     @field_validator("print", mode="before")
     @classmethod

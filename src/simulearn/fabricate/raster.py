@@ -108,7 +108,8 @@ def fill(
         ]
 
     # From each end: half a step along the side, given up for the turn, less the overlap.
-    inset = np.linalg.norm(steps, axis=2) / 2 - overlap
+    reach = np.where(region.overlap, overlap, 0.0)
+    inset = np.linalg.norm(steps, axis=2) / 2 - reach
     for corner in region.keep_off:
         inset = np.maximum(inset, _cleared(ends, along, corner, shell + line / 2 - overlap))
     inset *= np.minimum(1.0, (length - SHORTEST) / np.maximum(inset.sum(axis=1), 1e-9))[:, None]
@@ -118,12 +119,13 @@ def fill(
 
 
 def _halves(region: Region) -> list[Region]:
-    """Return a region cut in two across its strokes."""
+    """Return a region cut in two across its strokes; at the cut only those of one half overlap."""
     a, b, c, d = region.corners
     first, last = (a + b) / 2, (c + d) / 2
+    left, right = region.overlap
     return [
-        replace(region, corners=np.array(corners))
-        for corners in ([a, first, last, d], [first, b, c, last])
+        replace(region, corners=np.array([a, first, last, d]), overlap=(left, True)),
+        replace(region, corners=np.array([first, b, c, last]), overlap=(False, right)),
     ]
 
 

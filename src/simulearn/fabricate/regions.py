@@ -2,7 +2,7 @@
 
 Shell beads follow the outline of the grid. What they leave is cut along the joints' sides and the
 actuators' ends into quadrilaterals. How one is filled depends on the half and on whether a layer's
-number is even, so there are four kinds of layer in a print.
+number is even.
 
 half          beam                              joint
 active        along its actuator, across rest   from side to side, the two pairs in turn
@@ -37,12 +37,14 @@ class Region:
         corners: (4, 2) mm: first left, first right, last right, last left. Rows follow one another
             from the first edge to the last.
         keep_off: (k, 2) points around which shells turn, mm.
+        overlap: whether strokes reach beyond the left and beyond the right side.
     """
 
     role: str
     part: str
     corners: Array
     keep_off: Array
+    overlap: tuple[bool, bool] = (True, True)
 
 
 class Plan:
@@ -65,8 +67,7 @@ class Plan:
     @cached_property
     def union(self) -> shapely.Geometry:
         """The outline of the grid, with its cells as holes."""
-        quads = [*self.shape.joints, *self.shape.beams[:, [0, 1, 1, 0], [0, 0, 1, 1]]]
-        return shapely.simplify(shapely.union_all(shapely.polygons(quads)), TINY)
+        return footprint(self.shape)
 
     def rings(self) -> list[Array]:
         """Return the closed paths (n, 2) of the shell rows, outermost first."""
@@ -83,9 +84,8 @@ class Plan:
         """Return what fills a beam on a half where its actuator is, or where it is not."""
         first, last = self.shape.beams[b]  # [right, left]
         ratio = abs(float(self.grid.actuators[b])) if active else 0.0
-        net = float(np.linalg.norm((last - first).mean(axis=0)))
         regions = []
-        for role, start, end in _cuts(ratio, self.line / 2 / net):
+        for role, start, end in self._cuts(b, ratio):
             ends = []
             for t in (start, end):
                 right, left = (1 - t) * first + t * last
@@ -96,11 +96,28 @@ class Plan:
             regions.append(Region(role, f"beam {b}", np.array(corners), np.empty((0, 2))))
         return regions
 
-    def joint(self, j: int, odd: bool) -> Region:
-        """Return what fills a joint on layers of a parity: strokes between one pair of sides."""
+    def joint(self, j: int, top: bool, odd: bool) -> Region:
+        """Return what fills a joint: strokes between one pair of sides on layers of a parity.
+
+        At a side where the strokes of an actuator end these reach into the joint; the joint's do
+        not reach out as well.
+        """
         outer = self.shape.joints[j]
         corners = _moved_in(outer, np.where(self._free[j], self.shells * self.line, 0.0))
-        return Region(JOINT, f"joint {j}", np.roll(corners, -int(odd), axis=0), outer)
+        left, right = (3 + odd) % 4, (1 + odd) % 4
+        met = self._met[int(top), j]
+        return Region(
+            JOINT,
+            f"joint {j}",
+            np.roll(corners, -int(odd), axis=0),
+            outer,
+            (not met[left], not met[right]),
+        )
+
+    def _cuts(self, b: int, ratio: float) -> list[tuple[str, float, float]]:
+        first, last = self.shape.beams[b]
+        net = float(np.linalg.norm((last - first).mean(axis=0)))
+        return _cuts(ratio, self.line / 2 / net)
 
     @cached_property
     def _free(self) -> NDArray[np.bool_]:
@@ -108,6 +125,21 @@ class Plan:
         free = np.ones((len(self.grid.joints), 4), dtype=bool)
         free[self.grid.beams.ravel(), self.shape.sides.ravel()] = False
         return free
+
+    @cached_property
+    def _met(self) -> NDArray[np.bool_]:
+        """(2, J, 4) whether an actuator is printed to a side of a joint, at the bottom and top."""
+        met = np.zeros((2, len(self.grid.joints), 4), dtype=bool)
+        for b, ratio in enumerate(self.grid.actuators.tolist()):
+            if self._cuts(b, abs(ratio))[0][0] == ACTIVE:
+                met[int(ratio > 0), self.grid.beams[b], self.shape.sides[b]] = True
+        return met
+
+
+def footprint(shape: Outline) -> shapely.Geometry:
+    """Return the area that a grid covers, with its cells as holes."""
+    quads = [*shape.joints, *shape.beams[:, [0, 1, 1, 0], [0, 0, 1, 1]]]
+    return shapely.simplify(shapely.union_all(shapely.polygons(quads)), TINY)
 
 
 def _moved_in(corners: Array, by: Array) -> Array:

@@ -9,14 +9,14 @@ from math import floor, pi
 
 from simulearn.errors import InputError
 from simulearn.fabricate.printer import Printer
-from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT
+from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT
 from simulearn.grid import Message
 from simulearn.material import Material
 from simulearn.material.material import Print
 
 # Settings of the machine rather than of the material: a profile changes them without a warning.
 HARMLESS = {"speed_skirt", "speed_travel", "speed_z", "skirt_distance", "retraction"}
-HARMLESS |= {"retraction_speed"}
+HARMLESS |= {"retraction_speed", "brim"}
 UNITS = {
     "layer": " mm",
     "line_width": " mm",
@@ -25,6 +25,11 @@ UNITS = {
     "bed": " C",
     "speed_fill": " mm/min",
     "speed_shell": " mm/min",
+    "acceleration": " mm/s2",
+    "corner_speed": " mm/s",
+    "first_layer_speed": " mm/min",
+    "first_layer_height": " mm",
+    "brim": " mm",
 }
 # What any printer may do; a value beyond is a mistake in writing.
 RANGES = {
@@ -46,6 +51,12 @@ RANGES = {
     "skirt_distance": (0.0, 500.0),
     "retraction": (0.0, 20.0),
     "retraction_speed": (10.0, 60000.0),
+    "acceleration": (10.0, 100000.0),
+    "corner_speed": (0.1, 1000.0),
+    "first_layer_speed": (30.0, 60000.0),
+    "first_layer_height": (0.0, 2.0),
+    "first_layer_flow": (0.2, 3.0),
+    "brim": (0.0, 100.0),
 }
 WIDEST = 2.0  # a bead wider than so many nozzles tears
 ROUNDING = 1e-6
@@ -53,11 +64,12 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a toolpath and its file are made with; mm, mm/min, C.
+    """Everything that a toolpath and its file are made with; mm, mm/min, mm/s2, C.
 
     Attributes:
         layers: number of layers; the lower half of them is the bottom half of a beam.
-        layer: thickness of each.
+        layer: thickness of each, but for those of the bottom half if the first has its own.
+        heights: thickness of each layer, from the bed up.
         line: width of a row; rows tile the width of a beam.
         shells: how many rows on each side run along the outline.
         overlap: by how much a stroke of the fill reaches beyond its end.
@@ -68,12 +80,18 @@ class Settings:
         bed: of the bed, 0 being off.
         speed: of the beads, by role.
         flow: extruded volume over that of a rectangular bead, by role.
+        first_layer_speed: beads of the first layer are no faster.
+        first_layer_flow: flow of the first layer over that of the others.
+        acceleration: while printing: the material's, or the machine's where that is lower.
+        corner_speed: at which a right angle is taken, likewise, mm/s.
         travel: speed of travels.
+        acceleration_travel: of travels, the machine's.
         speed_z: of lifts.
         lift: how far the nozzle lifts to travel.
         retraction: how much filament is drawn back to travel.
         retraction_speed: how fast.
         skirt_distance: of the skirt from the grids.
+        brim: width of the brim around each grid, 0 if there is none.
         fan_first_layer: whether the fan blows on the first layer.
         fan: whether it blows on the others.
         density: of the filament, g/mm3.
@@ -81,6 +99,7 @@ class Settings:
 
     layers: int
     layer: float
+    heights: tuple[float, ...]
     line: float
     shells: int
     overlap: float
@@ -91,12 +110,18 @@ class Settings:
     bed: float
     speed: dict[str, float]
     flow: dict[str, float]
+    first_layer_speed: float
+    first_layer_flow: float
+    acceleration: float
+    corner_speed: float
     travel: float
+    acceleration_travel: float
     speed_z: float
     lift: float
     retraction: float
     retraction_speed: float
     skirt_distance: float
+    brim: float
     fan_first_layer: bool
     fan: bool
     density: float
@@ -164,18 +189,22 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
             f"the nozzle of {printer.name} is {ours.nozzle:g} mm, too narrow for a line of "
             f"{line:.3g} mm; fit one of {line / WIDEST:.3g} to {line:.3g} mm"
         )
-    if ours.layer > ours.nozzle:
+    heights = _heights(material, ours, layers)
+    if max(heights) > ours.nozzle:
         raise InputError(
-            f"a layer of {ours.layer:g} mm is thicker than the nozzle of {ours.nozzle:g} mm is "
+            f"a layer of {max(heights):g} mm is thicker than the nozzle of {ours.nozzle:g} mm is "
             f"wide; it would not stick to the one below"
         )
     warnings += _too_fast(printer, ours)
-    speed = {SKIRT: ours.speed_skirt, SHELL: ours.speed_shell}
-    flow = {SKIRT: ours.flow_active, SHELL: ours.flow_active, ACTIVE: ours.flow_active}
+    speed = {SKIRT: ours.speed_skirt, BRIM: ours.speed_skirt, SHELL: ours.speed_shell}
+    flow = dict.fromkeys((SKIRT, BRIM, SHELL, ACTIVE), ours.flow_active)
+    acceleration = min(ours.acceleration, printer.motion.acceleration)
+    travels = acceleration if printer.one_acceleration else printer.motion.acceleration_travel
     return (
         Settings(
             layers=layers,
             layer=ours.layer,
+            heights=heights,
             line=line,
             shells=shells,
             overlap=ours.shell_overlap * line,
@@ -186,12 +215,18 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
             bed=ours.bed,
             speed=speed | dict.fromkeys((ACTIVE, PASSIVE, JOINT), ours.speed_fill),
             flow=flow | {PASSIVE: ours.flow_passive, JOINT: ours.flow_joint},
+            first_layer_speed=ours.first_layer_speed,
+            first_layer_flow=ours.first_layer_flow,
+            acceleration=acceleration,
+            corner_speed=min(ours.corner_speed, printer.motion.corner_speed),
             travel=min(ours.speed_travel, printer.motion.speed),
+            acceleration_travel=travels,
             speed_z=min(ours.speed_z, printer.motion.speed_z),
             lift=printer.extruder.lift,
             retraction=ours.retraction,
             retraction_speed=ours.retraction_speed,
             skirt_distance=ours.skirt_distance,
+            brim=ours.brim,
             fan_first_layer=ours.fan_first_layer,
             fan=ours.fan,
             density=material.gravity.density * 1e6,
@@ -224,6 +259,26 @@ def _layers(material: Material, ours: Print) -> int:
             f"{half / max(count, 1):.4g} mm would"
         )
     return 2 * count
+
+
+def _heights(material: Material, ours: Print, layers: int) -> tuple[float, ...]:
+    """Return the thickness of each layer; a half is as thick as without a first layer of its own.
+
+    Raises:
+        InputError: nothing sensible is left for the other layers of the bottom half.
+    """
+    first, others = ours.first_layer_height, layers // 2 - 1
+    if not first:
+        return (ours.layer,) * layers
+    half = material.section.thickness / 2
+    rest = (half - first) / others if others else half
+    least, most = RANGES["layer"]
+    if not (least <= first and least <= rest <= most) or (not others and first != half):
+        raise InputError(
+            f"first_layer_height is {first:g} mm; the other {others} layers of the bottom half, "
+            f"which is {half:g} mm thick, would have {(half - first) / max(others, 1):.3g} mm each"
+        )
+    return (first, *(rest,) * others, *(ours.layer,) * (layers // 2))
 
 
 def _too_fast(printer: Printer, ours: Print) -> list[Message]:

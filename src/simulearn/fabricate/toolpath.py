@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 SCHEMA = "simulearn.toolpath/1"
 
 SKIRT, SHELL, ACTIVE, PASSIVE, JOINT = "skirt", "shell", "active", "passive", "joint"
-ROLES = (SKIRT, SHELL, ACTIVE, PASSIVE, JOINT)
+BRIM = "brim"
+ROLES = (SKIRT, SHELL, ACTIVE, PASSIVE, JOINT, BRIM)
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +23,9 @@ class Bead:
 
     Attributes:
         role: one of `ROLES`.
-        part: what it belongs to, as in "beam 3", "joint 0", "outline" or "skirt".
-        grid: which of the grids on the bed, from 0; -1 for the skirt.
+        part: what it belongs to, as in "beam 3", "joint 0", "outline", "skirt" or "brim".
+        grid: which of the grids on the bed, from 0; -1 for the skirt and for a row of the brim that
+            runs around several.
         points: (n, 2) mm on the bed; a closed bead ends where it begins.
         widths: (n - 1,) mm, of the bead between two points.
         speed: mm/min.

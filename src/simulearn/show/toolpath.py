@@ -2,7 +2,8 @@
 
 Beads of one layer are drawn nearly as wide as they are printed; side by side, where there is no
 room to tell them apart, wide enough to close. An active bead has the colour of its half, as in the
-picture of the design; what is not actuated is grey, the darker the more it binds.
+picture of the design; what is not actuated is grey, the darker the more it binds; the brim, which
+is cut off, is light brown.
 """
 
 from math import ceil
@@ -18,11 +19,12 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from simulearn.fabricate import Layer, Toolpath
-from simulearn.fabricate.toolpath import ACTIVE, JOINT, PASSIVE, SHELL, SKIRT
+from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT
 from simulearn.show import style
 
 Array = NDArray[np.float64]
 COLOURS = {SKIRT: "#b7b7b7", SHELL: "#4a4a4a", PASSIVE: "#cfcfcf", JOINT: "#8f8f8f"}
+COLOURS |= {BRIM: "#dccba6"}
 TRAVEL = "#009e73"  # of the same palette as the halves
 COLUMNS = 4
 PART, CLOSED = 0.82, 1.5  # of a bead's width: distinct, or closed to an area
@@ -117,7 +119,7 @@ def _axes(fig: Figure, place: tuple[float, float, float, float], low: Array, hig
 def _beads(ax: Axes, shown: Layer, top: bool, points: float, skirt: bool) -> None:
     """Draw the beads of a layer; a mm of width is so many points."""
     colours = COLOURS | {ACTIVE: style.TOP if top else style.BOTTOM}
-    for role in (SKIRT, PASSIVE, JOINT, ACTIVE, SHELL):
+    for role in (SKIRT, BRIM, PASSIVE, JOINT, ACTIVE, SHELL):
         colour = colours[role]
         beads = [b for b in shown.beads if b.role == role]
         if not beads or (role == SKIRT and not skirt):
@@ -173,6 +175,8 @@ def _legend(fig: Figure, roles: set[str], active: tuple[str, ...], travels: bool
 
     if SKIRT in roles:
         entry("skirt", COLOURS[SKIRT])
+    if BRIM in roles:
+        entry("brim", COLOURS[BRIM])
     if SHELL in roles:
         entry("shell", COLOURS[SHELL])
     if ACTIVE in roles:
