@@ -2,10 +2,8 @@
 
 import os
 
-import pytest
-from fuzzed_profiles import STARTS, profiles
+from fuzzed_profiles import profiles
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 from pydantic import ValidationError
 from virtual_limits import of_profile
 from virtual_printer import simulate

@@ -72,7 +72,7 @@ class Mover:
 
     def axis(self, axis: str, value: float) -> None:
         s = self.state
-        if s.homed[axis] is False:
+        if s.homed[axis] is False or s.homed[axis] is NEVER:
             self.danger("not-homed", f"{axis} moves before it is homed")
         if s.relative is NEVER:
             self.danger("mode", "the file has not said whether places are absolute")
@@ -159,8 +159,11 @@ class Mover:
             tiny = fed * self.area <= WIDEST * self.limits.nozzle**2 * self.limits.nozzle
             if not tiny:
                 self.danger("e-jump", f"{fed:.1f} mm of filament on {away:.1f} mm")
-        if fed > 0 and self.printing and s.target != 0:
-            self.bead(fed, z)
+        if self.printing and s.target != 0:
+            if fed > 0:
+                self.bead(fed, z)
+            elif fed < -TINY:
+                self.danger("e-jump", f"{-fed:.2f} mm of filament are drawn back along a bead")
 
     def bead(self, fed: float, z: Any) -> None:
         x, y = self.state.place["X"], self.state.place["Y"]

@@ -112,13 +112,12 @@ class _Machine:
                 self.danger("inches", "Klipper refuses inches")
         elif name == "G92":
             self.define(words)
-        elif name == "G28":
+        elif name == "G28" or (name in ("G161", "G162") and firmware == "sailfish"):
             self.home(words)
         elif name == "M132" and firmware == "sailfish":
             for axis in AXES:
-                if axis in words:
+                if axis in words and s.homed[axis] is NEVER:
                     s.homed[axis] = True
-                    s.place[axis] = NEVER
         elif name in ("M84", "M18"):
             if value is None:
                 for axis in AXES:
@@ -158,7 +157,9 @@ class _Machine:
             self.danger("origin", f"{name} moves the origin")
         elif name in SCALE and firmware != "klipper":
             self.danger("scale", f"{name} changes how far the machine moves")
-        elif (name in STOPS and (firmware != "klipper" or name in OF_KLIPPER)) or (name in STOPS_REPRAP and firmware == "reprap"):
+        elif (name in STOPS and (firmware != "klipper" or name in OF_KLIPPER)) or (
+            name in STOPS_REPRAP and firmware == "reprap"
+        ):
             self.danger("stops", f"{name} ends the print or switches the machine off")
         elif name in MOVES_SOMEWHERE:
             s.hide_place()
@@ -241,7 +242,8 @@ class _Machine:
         if "Z" in axes:
             self.touch()
         for axis in axes:
-            s.homed[axis] = self.firmware != "sailfish"
+            # A Replicator knows where its switches are only after M132.
+            s.homed[axis] = NEVER if self.firmware == "sailfish" else True
             s.place[axis] = 0.0 if axis == "Z" else NEVER
             s.shift[axis] = 0.0
         if self.firmware == "sailfish":
