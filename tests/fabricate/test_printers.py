@@ -1,6 +1,7 @@
 """Printer profiles: those that come along, one's own, what is refused, and fuzzed ones."""
 
 import math
+import re
 import tomllib
 
 import numpy as np
@@ -189,8 +190,8 @@ def test_a_grid_that_is_not_valid_is_refused():
         ("G53 G1 X999", "leads to X 999"),
         ("G1X999Y5", "leads to X 999"),
         ("M206 X50", "moves the origin"),
-        ("G1 X{1+5}", "{1+5} is computed by slicers only"),
-        ("M117 grüß", "character 8 is 'ü', which printers cannot read"),
+        ("G1 X{1+5}", "is not a number"),
+        ("M117 grüß", "plain ASCII"),
     ],
 )
 def test_code_that_leaves_the_bed_is_refused(code, words):
@@ -319,8 +320,9 @@ def check_fuzzed(data):
     if (answer := printed(data)) is None:
         return False
     printer, text, needs = answer
-    assert "nan" not in text.lower().replace("nano", "")
-    assert "inf" not in text.lower().replace("infill", "")
+    numbers = re.sub(r"^; \S+$", "", text, flags=re.MULTILINE).lower()  # without pictures
+    assert "nan" not in numbers.replace("nano", "")
+    assert "inf" not in numbers.replace("infill", "")
     file = read(text)
     move = np.isin(file.command, ["G0", "G1"])
     body = np.arange(len(move)) > np.nonzero(file.command == "M109")[0][-1]

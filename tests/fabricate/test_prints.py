@@ -86,7 +86,6 @@ def check_file(job):
     travels = np.nonzero((file.command == "G0") & (file.moved > 0))[0]
     travels = travels[travels > first]
     drawn = np.cumsum(np.where(prints, 0.0, fed))
-    drawn -= settings.retraction  # what the print before this one drew back is taken back first
     assert (drawn[prints] > -1e-3).all()
     steps = np.stack([file.places[travels - 1, :2], file.places[travels, :2]], axis=1)
     part = shapely.buffer(shapely.union_all([shape_of(grid)[0] for grid in job.grids]), 5e-3)

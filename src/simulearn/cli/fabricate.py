@@ -15,7 +15,7 @@ from simulearn.errors import InputError
 from simulearn.files import replacing
 
 if TYPE_CHECKING:
-    from simulearn.fabricate import Job
+    from simulearn.fabricate import Job, Printer
 
 
 @app.command("gcode")
@@ -35,8 +35,8 @@ def gcode_(
             "-o",
             "--output",
             help="A file to write (repeat for more); its ending picks what: .gcode .gco .g the "
-            "print; .png .pdf .svg a picture of its layers; .json the toolpath; "
-            ".3dm grids and toolpath for Rhino.",
+            "print; .gcode.3mf the print as a package for a Bambu Lab printer; .png .pdf .svg a "
+            "picture of its layers; .json the toolpath; .3dm grids and toolpath for Rhino.",
         ),
     ] = None,
     layer: Annotated[
@@ -51,7 +51,9 @@ def gcode_(
     files = output or []
     _check(files, [Path(name) for name in grids])
     names = [Path(name).stem for name in grids]
-    job = prepare([grid_of(name, material) for name in grids], load_printer(printer), names)
+    machine = load_printer(printer)
+    _check_machine(files, machine)
+    job = prepare([grid_of(name, material) for name in grids], machine, names)
     if layer is not None and layer > len(job.path.layers):
         raise InputError(f"--layer is {layer}; the print has layers 1 to {len(job.path.layers)}")
     job.gcode  # noqa: B018  (whatever is wrong with it keeps all files from being written)
@@ -110,6 +112,12 @@ def _print(job: "Job", path: Path, layer: int | None) -> None:
     write_gcode(job.gcode, path)
 
 
+def _package(job: "Job", path: Path, layer: int | None) -> None:
+    from simulearn.fabricate import write_package
+
+    write_package(job, path)
+
+
 def _picture(job: "Job", path: Path, layer: int | None) -> None:
     from simulearn.show import toolpath
 
@@ -141,6 +149,7 @@ WRITERS: dict[str, Writer] = {
     ".gcode": _print,
     ".gco": _print,
     ".g": _print,
+    ".gcode.3mf": _package,
     ".png": _picture,
     ".pdf": _picture,
     ".svg": _picture,
@@ -154,6 +163,18 @@ def _check(files: list[Path], grids: list[Path]) -> None:
     for path in files:
         outputs.check_package(path, outputs.ending_of(path, WRITERS))
         outputs.check_place(path, grids)
+
+
+def _check_machine(files: list[Path], machine: "Printer") -> None:
+    """Make sure that a printer reads the files before anything is computed."""
+    from simulearn.fabricate import model_number
+
+    for path in files:
+        if WRITERS[outputs.ending_of(path, WRITERS)] is _package:
+            try:
+                model_number(machine)
+            except InputError as error:
+                raise InputError(f"{path}: {error}") from error
 
 
 def _words(job: "Job") -> str:

@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-from simulearn.fabricate.firmware import factors, limits
-from simulearn.fabricate.machine import Machine, lift
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
 
@@ -16,28 +14,13 @@ def modes(printer: Printer) -> Iterator[str]:
     yield "M83" if printer.extruder.extrusion == "relative" else "M82"
 
 
-def before(settings: Settings, printer: Printer, machine: Machine) -> Iterator[str]:
-    """Yield what stands between the start code and the first move.
-
-    Args:
-        settings: how it is printed.
-        printer: on what.
-        machine: as the start code leaves it.
-    """
+def before(settings: Settings, printer: Printer) -> Iterator[str]:
+    """Yield what stands between the start code and the first move."""
     yield from modes(printer)  # again, since the start code may have set others
-    yield "; SimuLearn: speed, flow and accelerations that the print was planned with"
-    yield from factors(printer)
-    yield from limits(settings, printer)
     yield "G92 E0"
-    if not machine.clear:
-        yield f"{lift(printer)} ; off the bed before the nozzle is hot"
     if settings.bed > 0:
         yield f"M190 S{settings.bed:g}"
     yield f"M109 S{settings.temperature:g}"
-    if settings.retraction > machine.fed:
-        yield "; the print before this one ended with its filament drawn back"
-        yield f"G1 E{settings.retraction - machine.fed:.5f} F{settings.retraction_speed:g}"
-        yield "G92 E0"
     yield "M106 S255" if settings.fan_first_layer else "M107"
     yield ";LAYER_COUNT:" + str(settings.layers)
 
@@ -46,8 +29,7 @@ def after(printer: Printer) -> Iterator[str]:
     """Yield what stands between the last move and the end code."""
     if printer.code.progress:
         yield "M73 P100 R0"
-    yield "; SimuLearn: fan and heaters off, E counts from here"
+    yield "; SimuLearn: fan and heaters off"
     yield "M107"
     yield "M104 S0"
     yield "M140 S0"
-    yield "G92 E0"

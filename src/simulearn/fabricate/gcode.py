@@ -5,6 +5,7 @@ line, no arcs. What must not go wrong is not left to the profile: units and mode
 code and after it, the wait for a hot nozzle, and heaters off at the end are always written.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -12,27 +13,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import ComputationError
+from simulearn.fabricate import markers
 from simulearn.fabricate.around import after, before, modes
-from simulearn.fabricate.code import Frame, end_code, start_code
+from simulearn.fabricate.code import Frame, filled
 from simulearn.fabricate.estimate import Estimate
-from simulearn.fabricate.header import header
+from simulearn.fabricate.header import footer, header
 from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, Moves
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
+from simulearn.fabricate.thumbnail import thumbnails
 from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
 from simulearn.files import replacing
 from simulearn.grid import Message
+from simulearn.material import Material
 
 Array = NDArray[np.float64]
 FEEDS = (PRINT, RETRACT, RESTORE)
-# The names by which viewers colour lines, as Cura writes them.
+# Bambu's bed is off until a file heats it; software that checks files for its printers takes a bed
+# that is switched off before the print for a mistake.
+BED_OFF = re.compile(r"M1[49]0 S0\b")
+HIGHER = re.compile(r"G[01]\b.*Z")  # a move in z
+# The names by which viewers colour lines: as Cura writes them, as BambuStudio does.
 TYPES = {
-    SKIRT: "SKIRT",
-    BRIM: "SKIRT",
-    SHELL: "WALL-OUTER",
-    ACTIVE: "SKIN",
-    PASSIVE: "FILL",
-    JOINT: "WALL-INNER",
+    SKIRT: ("SKIRT", "Skirt"),
+    BRIM: ("SKIRT", "Brim"),
+    SHELL: ("WALL-OUTER", "Outer wall"),
+    ACTIVE: ("SKIN", "Internal solid infill"),
+    PASSIVE: ("FILL", "Sparse infill"),
+    JOINT: ("WALL-INNER", "Inner wall"),
 }
 
 
@@ -43,6 +51,8 @@ def gcode(
     estimated: Estimate,
     settings: Settings,
     printer: Printer,
+    material: Material,
+    names: Sequence[str] = (),
     notes: Sequence[str] = (),
     warnings: Sequence[Message] = (),
 ) -> str:
@@ -55,6 +65,8 @@ def gcode(
         estimated: time and filament.
         settings: how it is printed.
         printer: on what.
+        material: of what.
+        names: of the grids.
         notes: lines for the header: what is printed.
         warnings: lines for the header: what may be wrong with the print.
 
@@ -68,18 +80,26 @@ def gcode(
         low=tuple(bounds[0].tolist()),
         high=tuple(bounds[1].tolist()),
         last=tuple(moves.places[-1].tolist()),
-        height=path.layers[-1].z,
     )
-    start, machine = start_code(printer, settings, frame)
-    end = end_code(printer, settings, frame)
+    firmware = printer.firmware
+    body = list(_body(path, moves, durations, settings, printer, names))
+    end = [*after(printer), *filled(printer, settings, frame, "end")]
+    start = list(filled(printer, settings, frame, "start"))
+    if firmware == "bambu" and not settings.bed:
+        start = [line for line in start if not BED_OFF.match(line)]
+    if firmware == "reprap":
+        end = _ended(end)
     lines = [
-        *header(path, bounds, estimated, settings, printer, notes, warnings),
+        *header(path, bounds, estimated, settings, printer, material, names, notes, warnings),
+        *thumbnails(path, firmware),
         *modes(printer),
+        *markers.definitions(path, names, firmware),
         *start,
-        *before(settings, printer, machine),
-        *_body(path, moves, durations, settings, printer),
-        *after(printer),
+        *before(settings, printer),
+        *markers.all_layers(path, firmware),
+        *body,
         *end,
+        *footer(path, printer),
     ]
     return ("\n".join(lines) + "\n").encode("ascii", "replace").decode()
 
@@ -111,17 +131,35 @@ def check(moves: Moves, printer: Printer) -> None:
         raise ComputationError("a bead would draw filament back; nothing was written")
 
 
+def _ended(lines: Sequence[str]) -> list[str]:
+    """Return lines after the print with remarks by which RepRapFirmware leaves out their height.
+
+    It takes the last Z in a file for the height of the print, unless a comment there begins with E.
+    """
+    split = [line.partition(";") for line in lines]
+    return [
+        f"{code.rstrip()} ; End {comment.strip()}".rstrip() if HIGHER.match(code) else line
+        for line, (code, _, comment) in zip(lines, split, strict=True)
+    ]
+
+
 def _body(
-    path: Toolpath, moves: Moves, durations: Array, settings: Settings, printer: Printer
+    path: Toolpath,
+    moves: Moves,
+    durations: Array,
+    settings: Settings,
+    printer: Printer,
+    names: Sequence[str],
 ) -> Iterator[str]:
     """Yield the moves, with comments on layers, beads and progress."""
+    firmware = printer.firmware
     relative = printer.extruder.extrusion == "relative"
     beads = [(k, bead) for k, layer in enumerate(path.layers) for bead in layer.beads]
     first = np.searchsorted(moves.bead, np.arange(len(beads) + 1))
     done = np.append(0.0, np.cumsum(durations))
     total = max(float(done[-1]), 1e-9)
     lines = _Lines(moves, relative)
-    layer_now, type_now, progress = -1, "", ""
+    layer_now, type_now, progress, object_now = -1, "", "", markers.NOTHING
     # Layers of one kind share their beads, and so the text, wherever E has come to the same.
     known: dict[tuple[int, float], tuple[list[str], float]] = {}
     for number, (k, bead) in enumerate(beads):
@@ -132,6 +170,7 @@ def _body(
                 yield "M106 S255" if settings.fan else "M107"
             yield f";LAYER:{k}"
             yield f";Z:{path.layers[k].z:.3f}"
+            yield from markers.layer(k, len(path.layers), path.layers[k], firmware)
             if not relative:
                 yield "G92 E0"
                 lines.fed = 0.0
@@ -140,9 +179,15 @@ def _body(
         if printer.code.progress and here != progress:
             progress = here
             yield progress
-        if TYPES[bead.role] != type_now:
-            type_now = TYPES[bead.role]
-            yield f";TYPE:{type_now}"
+        if bead.grid != object_now:
+            yield from _switch(markers.change(names, firmware, object_now, bead.grid), lines)
+            object_now = bead.grid
+        if bead.role != type_now:
+            type_now = bead.role
+            cura, bambu = TYPES[type_now]
+            yield f";TYPE:{cura}"
+            if firmware == "bambu":
+                yield f"; FEATURE: {bambu}"
         yield f"; {bead.role}, {bead.part}" + (f", grid {bead.grid}" if bead.grid > 0 else "")
         prints = end - len(bead.widths)
         yield from lines.write(begin, prints)
@@ -152,7 +197,21 @@ def _body(
             known[key] = (text, lines.fed)
         text, lines.fed = known[key]
         yield from text
-    yield from lines.write(int(first[-1]), len(moves.kind))
+    yield from _switch(markers.change(names, firmware, object_now, markers.NOTHING), lines)
+    away = list(lines.write(int(first[-1]), len(moves.kind)))
+    yield from _ended(away) if firmware == "reprap" else away
+
+
+def _switch(change: Iterator[str], lines: "_Lines") -> Iterator[str]:
+    """Yield what leads to another object; E then counts from zero.
+
+    Some firmware does not count the absolute E of an object that it leaves out.
+    """
+    switch = list(change)
+    yield from switch
+    if switch and not lines.relative:
+        yield "G92 E0"
+        lines.fed = 0.0
 
 
 class _Lines:

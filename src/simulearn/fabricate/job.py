@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.fabricate.bed import place
 from simulearn.fabricate.build import build
-from simulearn.fabricate.code import factor_warnings
 from simulearn.fabricate.estimate import Estimate, durations_of, estimate
 from simulearn.fabricate.gcode import gcode
 from simulearn.fabricate.moves import Moves, moves_of
@@ -117,6 +116,8 @@ class Job:
             self.estimate,
             self.settings,
             self.printer,
+            self.material,
+            self.names,
             notes,
             self.warnings,
         )
@@ -167,6 +168,6 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
     path, from_build = build(placed, section, settings, bed)
     part = shapely.union_all([footprint(outline(grid, section)) for grid in placed])
     moves = moves_of(path, part, settings, np.array(bed.low), bed.height)
-    warnings += overridden + factor_warnings(printer) + from_build
+    warnings += overridden + from_build
     warnings += short_strokes(path, moves, settings, printer, materials[0])
     return Job(tuple(placed), names, materials[0], printer, settings, path, moves, tuple(warnings))

@@ -5,6 +5,7 @@ the actuation depends on comes from the material system. A profile may override 
 the print then has a warning.
 """
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -21,10 +22,13 @@ from pydantic import (
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
+from simulearn.grid.arrays import shown
 from simulearn.material.material import Print
 
 HERE = Path(__file__).parent / "printers"
 MOST_BASES = 8
+MOST_TEXT = 2**16  # characters of a profile that anybody may send
+MOST_DOTS = 300  # on one line of it
 
 _Coordinate = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
 _Place = Annotated[tuple[_Coordinate, _Coordinate], Strict(strict=False)]  # TOML has lists
@@ -71,11 +75,6 @@ class Bed(_Table):
     def high(self) -> tuple[float, float]:
         """The corner with the greatest x and y, mm."""
         return self.low[0] + self.width, self.low[1] + self.depth
-
-    @property
-    def middle(self) -> tuple[float, float]:
-        """The middle of the bed, mm."""
-        return self.low[0] + self.width / 2, self.low[1] + self.depth / 2
 
 
 class Reach(_Table):
@@ -172,11 +171,6 @@ class Printer(_Table):
     print: dict[str, float | bool] = {}
     code: Code
 
-    @property
-    def one_acceleration(self) -> bool:
-        """Whether the firmware keeps one acceleration for prints and travels."""
-        return self.firmware in ("klipper", "bambu")
-
     @field_validator("print", mode="before")
     @classmethod
     def _overrides(cls, given: Any) -> dict[str, Any]:
@@ -208,17 +202,56 @@ def load_printer(name: str | Path) -> Printer:
         InputError: the name is unknown, or the file is not a valid profile.
     """
     path = _path(name)
-    try:
-        return Printer.model_validate(_with_base(path))
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(str(part) for part in first["loc"]) or "profile"
-        raise InputError(f"{path}: {where}: {_reason(first)}") from error
+    return _printer(_with_base(path), str(path))
+
+
+def read_profile(text: str) -> Printer:
+    """Return the printer that the text of a profile describes, which may come from anybody.
+
+    Its `base`, if it has one, names a printer that comes with SimuLearn; no file is read otherwise.
+
+    Args:
+        text: TOML of at most `MOST_TEXT` characters.
+
+    Raises:
+        InputError: it is not a valid profile; `where` is the key, or the line of what is no TOML.
+    """
+    if len(text) > MOST_TEXT:
+        long = f"the profile has {len(text)} characters; at most {MOST_TEXT} are taken"
+        raise InputError(long, "profile-too-large", "profile")
+    for k, line in enumerate(text.splitlines(), 1):
+        if line.count(".") > MOST_DOTS:  # reading tables so deep takes long
+            raise InputError(
+                f"profile: line {k} has more than {MOST_DOTS} dots; write long code on several "
+                "lines, between three quotation marks",
+                "profile",
+                f"line {k}",
+            )
+    data = _tables(text, "profile")
+    base = data.pop("base", None)
+    if base is not None:
+        if not isinstance(base, str) or base not in printers():
+            known = ", ".join(printers())
+            raise InputError(
+                f"profile: base: is {shown(base)}; here it is one of {known}", "profile", "base"
+            )
+        data = _merged(_with_base(_path(base)), data)
+    return _printer(data, "profile")
 
 
 def profile_text(name: str) -> str:
     """Return the TOML text of a printer that comes with SimuLearn, to be edited."""
     return read_text(_path(name))
+
+
+def _printer(data: dict[str, Any], place: str) -> Printer:
+    """Return the printer of tables; messages name their place."""
+    try:
+        return Printer.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"]) or "profile"
+        raise InputError(f"{place}: {where}: {_reason(first)}", "profile", where) from error
 
 
 def _path(name: str | Path) -> Path:
@@ -235,12 +268,7 @@ def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
     """Return the tables of a profile over those that it begins from."""
     if depth > MOST_BASES:
         raise InputError(f"{path}: more than {MOST_BASES} profiles begin from one another")
-    try:
-        data = tomllib.loads(read_text(path))
-    except ValueError as error:  # also of a number of thousands of digits
-        raise InputError(f"{path}: is not valid TOML: {error}") from error
-    except RecursionError as error:
-        raise InputError(f"{path}: is not a profile; its tables are nested too deeply") from error
+    data = _tables(read_text(path), str(path))
     base = data.pop("base", None)
     if base is None:
         return data
@@ -249,6 +277,19 @@ def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
     beside = path.parent / base
     below = _with_base(beside if beside.suffix == ".toml" else _path(base), depth + 1)
     return _merged(below, data)
+
+
+def _tables(text: str, place: str) -> dict[str, Any]:
+    """Return the tables of a TOML text; messages name its place."""
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:  # also of a number of thousands of digits
+        line = re.search(r"line \d+", str(error))
+        where = line[0] if line else "profile"
+        raise InputError(f"{place}: is not valid TOML: {error}", "profile", where) from error
+    except RecursionError as error:
+        text = f"{place}: is not a profile; its tables are nested too deeply"
+        raise InputError(text, "profile", "profile") from error
 
 
 def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
@@ -268,6 +309,9 @@ def _reason(error: Any) -> str:
         return "is missing"
     if error["type"] == "value_error":
         return str(error["ctx"]["error"])
-    shown = repr(error["input"])
-    shown = shown if len(shown) <= 40 else shown[:37] + "..."
-    return f"is {shown}; {error['msg'][0].lower()}{error['msg'][1:]}"
+    try:
+        given = repr(error["input"])
+    except RecursionError:
+        given = "tables in tables"
+    given = given if len(given) <= 40 else given[:37] + "..."
+    return f"is {given}; {error['msg'][0].lower()}{error['msg'][1:]}"

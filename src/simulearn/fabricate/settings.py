@@ -198,8 +198,6 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
     warnings += _too_fast(printer, ours)
     speed = {SKIRT: ours.speed_skirt, BRIM: ours.speed_skirt, SHELL: ours.speed_shell}
     flow = dict.fromkeys((SKIRT, BRIM, SHELL, ACTIVE), ours.flow_active)
-    acceleration = min(ours.acceleration, printer.motion.acceleration)
-    travels = acceleration if printer.one_acceleration else printer.motion.acceleration_travel
     return (
         Settings(
             layers=layers,
@@ -217,10 +215,10 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
             flow=flow | {PASSIVE: ours.flow_passive, JOINT: ours.flow_joint},
             first_layer_speed=ours.first_layer_speed,
             first_layer_flow=ours.first_layer_flow,
-            acceleration=acceleration,
+            acceleration=min(ours.acceleration, printer.motion.acceleration),
             corner_speed=min(ours.corner_speed, printer.motion.corner_speed),
             travel=min(ours.speed_travel, printer.motion.speed),
-            acceleration_travel=travels,
+            acceleration_travel=printer.motion.acceleration_travel,
             speed_z=min(ours.speed_z, printer.motion.speed_z),
             lift=printer.extruder.lift,
             retraction=ours.retraction,

@@ -15,14 +15,15 @@ from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.fabricate import Job
 from simulearn.files import replacing
 from simulearn.grid import Grid, outline
 from simulearn.interop.body import body
 from simulearn.inverse.goals import Goals
+from simulearn.palette import BEADS
 from simulearn.schedule import SCHEDULE
 from simulearn.show import style
-from simulearn.show.toolpath import COLOURS
 from simulearn.simulate import Result
 
 Array = NDArray[np.float64]
@@ -180,7 +181,7 @@ def _toolpath(file: "_File", job: Job, grids: Sequence[int], turn: Array, shift:
                 places = np.c_[bead.points @ turn.T, np.full(len(bead.points), layer.z)] + shift
                 more = {"layer": f"{k + 1}", "height": f"{layer.height:g}"}
                 more |= {"width": f"{bead.widths.mean():.3g}", "speed": f"{bead.speed:g}"}
-                colour = COLOURS.get(bead.role, ACTIVE)
+                colour = BEADS.get(bead.role, ACTIVE)
                 file.line(f"toolpath::{bead.role}", places, bead.part, colour, more)
 
 
@@ -188,11 +189,8 @@ class _File:
     """A Rhino file in memory; layers are made as they are named."""
 
     def __init__(self) -> None:
-        try:
-            self.rhino: Any = import_module("rhino3dm")
-        except ImportError as error:
-            text = "Rhino files need a package: pip install 'simulearn[rhino]'"
-            raise InputError(text, "package-missing") from error
+        require("Rhino files need", "rhino3dm")
+        self.rhino: Any = import_module("rhino3dm")
         self.model = self.rhino.File3dm()
         self.model.ApplicationName = "SimuLearn"
         self.model.Settings.ModelUnitSystem = self.rhino.UnitSystem.Millimeters

@@ -1,7 +1,6 @@
 """The style of pictures: colours, line weights, legend, scale bar.
 
-Top and bottom actuators have the vermillion and blue of Okabe and Ito's palette, which people with
-any common colour blindness tell apart; a longer actuator has a deeper tint of them.
+Top and bottom actuators have the colours of the palette; a longer one has a deeper tint of them.
 """
 
 from collections.abc import Sequence
@@ -19,7 +18,8 @@ from matplotlib.text import Text
 from matplotlib.typing import ColorType
 from numpy.typing import ArrayLike, NDArray
 
-TOP, BOTTOM = "#d55e00", "#0072b2"
+from simulearn.palette import BOTTOM, TOP
+
 PASSIVE, JOINT, FIXED = "#dcdcdc", "#a6a6a6", "#3a3a3a"
 GHOST, GHOST_LINE = "#f0f0f0", "#cfcfcf"
 INK, LINE = "#262626", "#4d4d4d"

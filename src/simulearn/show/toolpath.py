@@ -20,11 +20,10 @@ from numpy.typing import NDArray
 
 from simulearn.fabricate import Layer, Toolpath
 from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT
+from simulearn.palette import BEADS
 from simulearn.show import style
 
 Array = NDArray[np.float64]
-COLOURS = {SKIRT: "#b7b7b7", SHELL: "#4a4a4a", PASSIVE: "#cfcfcf", JOINT: "#8f8f8f"}
-COLOURS |= {BRIM: "#dccba6"}
 TRAVEL = "#009e73"  # of the same palette as the halves
 COLUMNS = 4
 PART, CLOSED = 0.82, 1.5  # of a bead's width: distinct, or closed to an area
@@ -118,7 +117,7 @@ def _axes(fig: Figure, place: tuple[float, float, float, float], low: Array, hig
 
 def _beads(ax: Axes, shown: Layer, top: bool, points: float, skirt: bool) -> None:
     """Draw the beads of a layer; a mm of width is so many points."""
-    colours = COLOURS | {ACTIVE: style.TOP if top else style.BOTTOM}
+    colours = BEADS | {ACTIVE: style.TOP if top else style.BOTTOM}
     for role in (SKIRT, BRIM, PASSIVE, JOINT, ACTIVE, SHELL):
         colour = colours[role]
         beads = [b for b in shown.beads if b.role == role]
@@ -174,18 +173,18 @@ def _legend(fig: Figure, roles: set[str], active: tuple[str, ...], travels: bool
         entries.append(HPacker(children=[box, words], align="center", pad=0, sep=4))
 
     if SKIRT in roles:
-        entry("skirt", COLOURS[SKIRT])
+        entry("skirt", BEADS[SKIRT])
     if BRIM in roles:
-        entry("brim", COLOURS[BRIM])
+        entry("brim", BEADS[BRIM])
     if SHELL in roles:
-        entry("shell", COLOURS[SHELL])
+        entry("shell", BEADS[SHELL])
     if ACTIVE in roles:
         halves = [("bottom half", "top half")[colour == style.TOP] for colour in active]
         entry(f"active ({', '.join(halves)})", *active)
     if PASSIVE in roles:
-        entry("passive", COLOURS[PASSIVE])
+        entry("passive", BEADS[PASSIVE])
     if JOINT in roles:
-        entry("joint", COLOURS[JOINT])
+        entry("joint", BEADS[JOINT])
     if travels:
         entry("travel, from the dot", TRAVEL)
     key = AnchoredOffsetbox(
