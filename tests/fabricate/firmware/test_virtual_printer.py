@@ -94,6 +94,8 @@ FAULTS = [
     ("drawn-back", "M109 S205", "G10"),
     ("hits-print", "G0 Z10.5 F300", "G0 Z0.4"),
     ("hits-print", "G0 Z10.5 F300", "G0 X0 Y0\nG0 Z0\nG0 X100 Y100"),
+    ("hits-print", "M84", "G28"),
+    ("hits-print", "G0 Z10.5 F300", "G28 Z"),
     ("too-hot", "M109 S205", "M104 S305\nM104 S205"),
     ("too-hot", "M109 S205", "M140 S130\nM140 S0"),
     ("origin", "M109 S205", "G92 X10"),
@@ -223,6 +225,8 @@ def test_what_a_macro_hides_is_no_danger_until_the_file_uses_it():
     assert trace.dangers == []
     lost = without(text, "M220 S100", "G92 E0")
     assert simulate(lost, limits("klipper")).kinds == set()
+    file = good("reprap").replace(START["reprap"], 'M98 P"start.g"')
+    assert kinds("reprap", file) == set()
     # Elsewhere such a word is no command, and so the machine is not homed.
     for firmware in ("marlin", "prusa", "bambu", "reprap"):
         text = good(firmware).replace(START[firmware], "PRINT_START BED=0 EXTRUDER=205")

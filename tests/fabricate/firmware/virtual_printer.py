@@ -12,7 +12,8 @@ Sailfish (`gpx.c`). Where they differ the firmware decides:
   after G29 A.
 - On a Replicator, homing leaves the axes where the switches are: M132 recalls their places, and
   any G92 before all are known sets them to nought.
-- A word that is no command is a macro in Klipper and nothing at all elsewhere.
+- A word that is no command is a macro in Klipper and nothing at all elsewhere; RepRapFirmware's
+  macros are run by M98.
 """
 
 import numpy as np
@@ -33,7 +34,7 @@ SCALE = {"M92", "M350"}
 OF_KLIPPER = {"M112", "M24", "SET_GCODE_OFFSET"}  # of these, what Klipper knows
 WAITS = {"M190", "M116", "M191", "M0", "M1", "M600", "M25", "M226", "G4"}
 MOVES_SOMEWHERE = {"G12", "G27", "G29", "G30", "G32", "G33", "G34", "G35", "G38", "G80", "M600"}
-MOVES_SOMEWHERE |= {"M125", "M98", "M701", "M48"}
+MOVES_SOMEWHERE |= {"M125", "M701", "M48"}
 HARMLESS = ("EXCLUDE_OBJECT", "SET_PRINT_STATS_INFO", "RESPOND")  # macros that do not move
 ARCS = {"G2", "G3", "G5"}
 
@@ -161,6 +162,8 @@ class _Machine:
             name in STOPS_REPRAP and firmware == "reprap"
         ):
             self.danger("stops", f"{name} ends the print or switches the machine off")
+        elif name == "M98" and firmware == "reprap":
+            s.hide()
         elif name in MOVES_SOMEWHERE:
             s.hide_place()
         elif firmware == "klipper" and name[1:2].isalpha() and not name.startswith(HARMLESS):
@@ -241,6 +244,8 @@ class _Machine:
         axes = [axis for axis in AXES if axis in words] or list(AXES)
         if "Z" in axes:
             self.touch()
+            if self.mover.beads and not self.limits.round_bed:  # a delta homes upwards
+                self.danger("hits-print", "Z is homed, and the print is on the bed")
         for axis in axes:
             # A Replicator knows where its switches are only after M132.
             s.homed[axis] = NEVER if self.firmware == "sailfish" else True
