@@ -5,9 +5,10 @@ the actuation depends on comes from the material system. A profile may override 
 the print then has a warning.
 """
 
+import re
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BaseModel,
@@ -17,14 +18,19 @@ from pydantic import (
     TypeAdapter,
     ValidationError,
     field_validator,
+    model_validator,
 )
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
+from simulearn.grid import Message
+from simulearn.grid.arrays import shown
 from simulearn.material.material import Print
 
 HERE = Path(__file__).parent / "printers"
 MOST_BASES = 8
+MOST_TEXT = 2**16  # characters of a profile that anybody may send
+MOST_DOTS = 300  # on one line of it
 
 _Coordinate = Annotated[float, Field(ge=-1e4, le=1e4, allow_inf_nan=False)]
 _Place = Annotated[tuple[_Coordinate, _Coordinate], Strict(strict=False)]  # TOML has lists
@@ -62,6 +68,35 @@ class Bed(_Table):
     shape: Literal["rectangle", "round"] | None = None
     excluded: list[_Box] = []
 
+    @model_validator(mode="after")
+    def _as_wide_as_deep(self) -> Self:
+        if self.shape == "round" and self.width != self.depth:
+            raise ValueError("a round bed is as deep as it is wide; both are its diameter")
+        return self
+
+    @property
+    def round(self) -> bool:
+        """Whether it is known to be round."""
+        return self.shape == "round"
+
+    @property
+    def shape_unclear(self) -> bool:
+        """Whether it may be round, and the profile does not say."""
+        return self.shape is None and self.origin == "centre" and self.width == self.depth
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Its middle, mm."""
+        return self.low[0] + self.width / 2, self.low[1] + self.depth / 2
+
+    def ask_shape(self) -> str:
+        """Return what to ask for where the shape matters and is not known."""
+        return (
+            f"a bed as deep as it is wide with its origin in the middle is often round: write "
+            f'shape = "round" or shape = "rectangle" under [bed] (a round one reaches '
+            f"{self.width / 2:g} mm from its middle)"
+        )
+
     @property
     def low(self) -> tuple[float, float]:
         """The corner with the least x and y, mm."""
@@ -98,7 +133,7 @@ class Temperatures(_Table):
 
 
 class Motion(_Table):
-    """How the machine moves; used for the estimate, nothing of it is written to the file.
+    """How the machine moves; accelerations and corner speed are written to the file.
 
     Attributes:
         speed: fastest in x and y, mm/min.
@@ -127,11 +162,19 @@ class Heating(_Table):
 
 
 class Code(_Table):
-    """Code before and after the print; words in braces are filled in (see docs/gcode.md)."""
+    """Code before and after the print; words in braces are filled in (see docs/printers.md).
+
+    Attributes:
+        start: before the print.
+        end: after it.
+        progress: whether the file says how far the print has come (M73).
+        limits: whether the file sets accelerations and corner speed.
+    """
 
     start: Annotated[str, Field(max_length=20000)]
     end: Annotated[str, Field(max_length=20000)]
     progress: bool = True
+    limits: bool = True
 
 
 class Printer(_Table):
@@ -167,6 +210,11 @@ class Printer(_Table):
     print: dict[str, float | bool] = {}
     code: Code
 
+    @property
+    def one_acceleration(self) -> bool:
+        """Whether the firmware has one acceleration for prints and travels: that of prints."""
+        return self.firmware == "klipper"
+
     @field_validator("print", mode="before")
     @classmethod
     def _overrides(cls, given: Any) -> dict[str, Any]:
@@ -186,6 +234,17 @@ class Printer(_Table):
         return checked
 
 
+def untried(printer: Printer) -> list[Message]:
+    """Return a warning where nobody has run a printer's profile on its machine."""
+    if printer.tried.strip():
+        return []
+    text = (
+        f"nobody has run the profile {printer.name} on its machine; before the first print read "
+        f"docs/printers.md, and keep a hand on the switch"
+    )
+    return [Message("untried", "tried", text)]
+
+
 def printers() -> list[str]:
     """Return the names of the printers that come with SimuLearn."""
     return sorted(path.stem for path in HERE.glob("*.toml"))
@@ -198,17 +257,57 @@ def load_printer(name: str | Path) -> Printer:
         InputError: the name is unknown, or the file is not a valid profile.
     """
     path = _path(name)
-    try:
-        return Printer.model_validate(_with_base(path))
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(str(part) for part in first["loc"]) or "profile"
-        raise InputError(f"{path}: {where}: {_reason(first)}") from error
+    return _printer(_with_base(path), str(path))
+
+
+def read_profile(text: str) -> Printer:
+    """Return the printer that the text of a profile describes, which may come from anybody.
+
+    Its `base`, if it has one, names a printer that comes with SimuLearn; no file is read otherwise.
+
+    Args:
+        text: TOML of at most `MOST_TEXT` characters.
+
+    Raises:
+        InputError: it is not a valid profile; `where` is the key, or the line of what is no TOML.
+    """
+    if len(text) > MOST_TEXT:
+        long = f"the profile has {len(text)} characters; at most {MOST_TEXT} are taken"
+        raise InputError(long, "profile-too-large", "profile")
+    for k, line in enumerate(text.splitlines(), 1):
+        if line.count(".") > MOST_DOTS:  # reading tables so deep takes long
+            raise InputError(
+                f"profile: line {k} has more than {MOST_DOTS} dots; write long code on several "
+                "lines, between three quotation marks",
+                "profile",
+                f"line {k}",
+            )
+    data = _tables(text, "profile")
+    base = data.pop("base", None)
+    if base is not None:
+        if not isinstance(base, str) or base not in printers():
+            known = ", ".join(printers())
+            raise InputError(
+                f"profile: base: is {shown(base)}; here it is one of {known}", "profile", "base"
+            )
+        below = _with_base(_path(base))
+        data = _merged(_kept(below, data), data)
+    return _printer(data, "profile")
 
 
 def profile_text(name: str) -> str:
     """Return the TOML text of a printer that comes with SimuLearn, to be edited."""
     return read_text(_path(name))
+
+
+def _printer(data: dict[str, Any], place: str) -> Printer:
+    """Return the printer of tables; messages name their place."""
+    try:
+        return Printer.model_validate(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(str(part) for part in first["loc"]) or "profile"
+        raise InputError(f"{place}: {where}: {_reason(first)}", "profile", where) from error
 
 
 def _path(name: str | Path) -> Path:
@@ -225,12 +324,7 @@ def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
     """Return the tables of a profile over those that it begins from."""
     if depth > MOST_BASES:
         raise InputError(f"{path}: more than {MOST_BASES} profiles begin from one another")
-    try:
-        data = tomllib.loads(read_text(path))
-    except ValueError as error:  # also of a number of thousands of digits
-        raise InputError(f"{path}: is not valid TOML: {error}") from error
-    except RecursionError as error:
-        raise InputError(f"{path}: is not a profile; its tables are nested too deeply") from error
+    data = _tables(read_text(path), str(path))
     base = data.pop("base", None)
     if base is None:
         return data
@@ -238,7 +332,38 @@ def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
         raise InputError(f"{path}: base: is not the name of a printer or the path of its file")
     beside = path.parent / base
     below = _with_base(beside if beside.suffix == ".toml" else _path(base), depth + 1)
-    return _merged(below, data)
+    return _merged(_kept(below, data), data)
+
+
+def _kept(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """Return what a profile takes over from the one it begins from.
+
+    That somebody has printed with a profile says nothing about another one, the shape and the zones
+    of a bed nothing about one whose origin lies elsewhere, the reach nothing about one of another
+    size.
+    """
+    below = {key: value for key, value in below.items() if key != "tried"}
+    old, new = below.get("bed"), above.get("bed")
+    if not isinstance(old, dict) or not isinstance(new, dict):
+        return below
+    if new.get("origin", old.get("origin")) != old.get("origin"):
+        old = {key: value for key, value in old.items() if key not in ("shape", "excluded")}
+    if new.keys() & {"origin", "width", "depth", "height"}:
+        below = {key: value for key, value in below.items() if key != "reach"}
+    return below | {"bed": old}
+
+
+def _tables(text: str, place: str) -> dict[str, Any]:
+    """Return the tables of a TOML text; messages name its place."""
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:  # also of a number of thousands of digits
+        line = re.search(r"line \d+", str(error))
+        where = line[0] if line else "profile"
+        raise InputError(f"{place}: is not valid TOML: {error}", "profile", where) from error
+    except RecursionError as error:
+        text = f"{place}: is not a profile; its tables are nested too deeply"
+        raise InputError(text, "profile", "profile") from error
 
 
 def _merged(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
@@ -258,6 +383,9 @@ def _reason(error: Any) -> str:
         return "is missing"
     if error["type"] == "value_error":
         return str(error["ctx"]["error"])
-    shown = repr(error["input"])
-    shown = shown if len(shown) <= 40 else shown[:37] + "..."
-    return f"is {shown}; {error['msg'][0].lower()}{error['msg'][1:]}"
+    try:
+        given = repr(error["input"])
+    except RecursionError:
+        given = "tables in tables"
+    given = given if len(given) <= 40 else given[:37] + "..."
+    return f"is {given}; {error['msg'][0].lower()}{error['msg'][1:]}"
