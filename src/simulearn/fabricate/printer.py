@@ -290,7 +290,8 @@ def read_profile(text: str) -> Printer:
             raise InputError(
                 f"profile: base: is {shown(base)}; here it is one of {known}", "profile", "base"
             )
-        data = _merged(_with_base(_path(base)), data)
+        below = _with_base(_path(base))
+        data = _merged(_kept(below, data), data)
     return _printer(data, "profile")
 
 
@@ -337,9 +338,11 @@ def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
 def _kept(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
     """Return what a profile takes over from the one it begins from.
 
-    The shape and the zones of a bed say nothing about one whose origin lies elsewhere, the reach
-    nothing about one of another size.
+    That somebody has printed with a profile says nothing about another one, the shape and the zones
+    of a bed nothing about one whose origin lies elsewhere, the reach nothing about one of another
+    size.
     """
+    below = {key: value for key, value in below.items() if key != "tried"}
     old, new = below.get("bed"), above.get("bed")
     if not isinstance(old, dict) or not isinstance(new, dict):
         return below
