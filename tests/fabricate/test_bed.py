@@ -91,7 +91,7 @@ def test_what_does_not_fit_is_refused_with_its_size():
 def test_the_skirt_draws_near_where_the_bed_ends_or_is_left_out():
     ends = load_printer("prusa-mk4")
     job = prepare([make("dome", (3, 2), 75.0)], ends)  # 232 x 157 on 250 x 210
-    assert [w.code for w in job.warnings] == ["override", "skirt"]
+    assert [w.code for w in job.warnings] == ["untried", "override", "skirt"]
     low, high = job.path.bounds
     assert (low > 0).all()
     assert (high < (250, 210)).all()

@@ -1,46 +1,34 @@
-"""The code before and after a print: words in braces filled in, and nothing that leaves the bed.
+"""The code before and after a print: words in braces filled in, every line checked as state.
 
-A profile's code goes to the printer as it stands. Each move in it is checked in the mode that
-holds there: the file sets absolute coordinates (G90) before the start code, and the end code begins
-in them at the place of the last move. What a macro does cannot be read; so after one the place and
-the mode are unknown until the code sets them.
+A profile's code goes to the printer as it stands. What it does is followed in the dialect of the
+printer's firmware (see machine.py): the start code begins in millimetres and absolute coordinates,
+with E as the profile counts it; the end code begins at the place of the last move, with E relative.
+Where a line of the start code lets a hot nozzle wait on the bed, a lift is written before it.
 """
 
-import re
-from dataclasses import dataclass
+import unicodedata
+from dataclasses import dataclass, replace
 
 from simulearn.errors import InputError
+from simulearn.fabricate import heat
+from simulearn.fabricate.commands import Command, commands
+from simulearn.fabricate.firmware import DIALECTS
+from simulearn.fabricate.machine import Machine
+from simulearn.fabricate.motion import reach
+from simulearn.fabricate.moves import Moves
+from simulearn.fabricate.placeholders import fill, fill_comment
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
+from simulearn.fabricate.state import State
+from simulearn.fabricate.toolpath import Toolpath
+from simulearn.grid import Message
 
-WORD = re.compile(r"\{(\w*)\}")
-TOKEN = re.compile(r"([A-Z])\s*([^\sA-Z]*)", re.IGNORECASE)
-MOVE = re.compile(r"[Gg]0*[01](?![\d.])")
-ARC = re.compile(r"[Gg]0*[23](?![\d.])")
-GLUED = re.compile(r"[\d.][Ee][-+]?\d")
-NUMBER = re.compile(r"^[Nn]\d+\s*")
-COMMAND = re.compile(r"(?=\b[GgMm]\d)")
-HEAD = re.compile(r"([GM])\s*0*(\d+(?:\.\d+)?)", re.IGNORECASE)
-SHOWN = ("M117", "M118")  # their text is shown, not done
-ORIGIN = "moves the origin, and with it the print"
-FORBIDDEN = {
-    "G20": "counts in inches, and files are in millimetres",
-    "G52": ORIGIN,
-    "M206": ORIGIN,
-    "M428": ORIGIN,
-    "M851": "moves the probe, and with it the height of the print",
-    "M92": "changes how far the machine moves",
-    "M200": "changes how E is counted",
-    "SET_GCODE_OFFSET": ORIGIN,
-}
-# The coordinate systems G54 to G59.3, and what else of G92 there is (G92.1 and the like).
-SYSTEM = re.compile(r"G(5[4-9](\.\d+)?|92\.\d+)")
-ROUNDING = 1e-6
+LIFT = 10.0  # mm above the bed, where a nozzle heats up
 
 
 @dataclass(frozen=True)
 class Frame:
-    """What a profile's code may name: see docs/gcode.md.
+    """What a profile's code may name: see docs/printers.md.
 
     Attributes:
         low: least x and y of what is printed, mm.
@@ -53,21 +41,106 @@ class Frame:
     last: tuple[float, float, float]
 
 
-def filled(printer: Printer, settings: Settings, frame: Frame, which: str) -> list[str]:
-    """Return the lines of a printer's start or end code, with its words filled in.
+def frame_of(path: Toolpath, moves: Moves) -> Frame:
+    """Return where a toolpath is printed."""
+    low, high = path.bounds.tolist()
+    return Frame(tuple(low), tuple(high), tuple(moves.places[-1].tolist()))
+
+
+@dataclass(frozen=True)
+class Script:
+    """Start or end code.
+
+    Attributes:
+        lines: as they go to the printer.
+        state: of the machine after the last of them.
+        messages: what may be wrong with them.
+    """
+
+    lines: list[str]
+    state: State
+    messages: list[Message]
+
+
+def start_code(printer: Printer, settings: Settings, frame: Frame) -> Script:
+    """Return a printer's start code.
 
     Args:
         printer: whose code.
         settings: how it prints.
         frame: where it prints.
-        which: "start" or "end".
 
     Raises:
-        InputError: a word is not known, or a line moves where the printer cannot.
+        InputError: a word is not known, or a line does what it must not.
     """
-    text = getattr(printer.code, which)
+    relative = printer.extruder.extrusion == "relative"
+    ended = end_code(printer, settings, frame).state
+    state = State(
+        e_own=relative,
+        e_last=relative,
+        e=None if printer.firmware == "sailfish" else 0.0,
+        back=ended.back if ended.back_known else settings.retraction,
+        cold=heat.cold_limit(printer),
+    )
+    script = _script(printer, settings, frame, "start", state)
+    _ready(script.state, printer)
+    return script
+
+
+def end_code(printer: Printer, settings: Settings, frame: Frame) -> Script:
+    """Return a printer's end code; arguments and errors as those of the start code."""
+    state = State(
+        at=dict(zip("XYZ", frame.last, strict=True)),
+        least_z=frame.last[2],
+        homed=dict.fromkeys("XYZ", True),
+        e_own=True,
+        e_last=True,
+        e=0.0,
+        back=settings.retraction,
+        hot=settings.temperature,
+        cold=heat.cold_limit(printer),
+    )
+    return _script(printer, settings, frame, "end", state)
+
+
+def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Message]:
+    """Return what may be wrong with a printer's code; none where it is refused, which says more."""
+    try:
+        start = start_code(printer, settings, frame)
+        return [*start.messages, *end_code(printer, settings, frame).messages]
+    except InputError:
+        return []
+
+
+def lift(settings: Settings, printer: Printer) -> str:
+    """Return the move that takes the nozzle off the bed, in absolute coordinates."""
+    height = min(LIFT, reach(printer)["Z"][1])
+    return f"G0 Z{height:g} F{settings.speed_z:g}"
+
+
+def _script(printer: Printer, settings: Settings, frame: Frame, which: str, state: State) -> Script:
+    words = _words(printer, settings, frame)
+    machine = Machine(printer, replace(state))
+    lines = []
+    for k, line in enumerate(getattr(printer.code, which).strip("\n").splitlines(), 1):
+        where = f"{printer.name}: code.{which}, line {k}"
+        code, mark, comment = line.partition(";")
+        _ascii(code, where)
+        code = fill(code, words, where).rstrip()
+        for command in _commands(code, printer, where):
+            if which == "start" and _lifts(command, machine.state, where):
+                lines += _off_bed(machine, settings, where)
+            machine.run(command, where)
+            _in_dialect(command, printer, where)
+        comment = _plain(fill_comment(comment, words))
+        lines.append(f"{code} {mark}{comment}".strip() if mark else code)
+    return Script(lines, machine.state, machine.messages)
+
+
+def _words(printer: Printer, settings: Settings, frame: Frame) -> dict[str, str]:
+    """Return the words that code may name, as they are filled in."""
     bed = printer.bed
-    words = {
+    numbers = {
         "temperature": settings.temperature,
         "bed": settings.bed,
         "nozzle": settings.nozzle,
@@ -77,6 +150,8 @@ def filled(printer: Printer, settings: Settings, frame: Frame, which: str) -> li
         "min_y": frame.low[1],
         "max_x": frame.high[0],
         "max_y": frame.high[1],
+        "size_x": frame.high[0] - frame.low[0],
+        "size_y": frame.high[1] - frame.low[1],
         "top": frame.last[2],
         "bed_min_x": bed.low[0],
         "bed_min_y": bed.low[1],
@@ -84,117 +159,79 @@ def filled(printer: Printer, settings: Settings, frame: Frame, which: str) -> li
         "bed_max_y": bed.high[1],
         "bed_max_z": bed.height,
     }
-    lines = []
-    checked = _Checked(printer)
-    if which == "end":
-        checked.at = dict(zip("XYZ", frame.last, strict=True))
-    for k, line in enumerate(text.strip("\n").splitlines(), 1):
-        where = f"{printer.name}: code.{which}, line {k}"
-        if not (line.isascii() and line.replace("\t", " ").isprintable()):
-            raise InputError(f"{where}: has a character that printers cannot read; use plain ASCII")
-        for word in WORD.findall(line):
-            if word not in words:
-                known = ", ".join(words)
-                raise InputError(f"{where}: {{{word}}} is not known; words are {known}")
-        line = WORD.sub(lambda match: f"{words[match[1]]:.3f}".rstrip("0").rstrip("."), line)
-        checked.read(line, where)
-        lines.append(line.rstrip())
-    return lines
+    return {name: f"{x:.3f}".rstrip("0").rstrip(".") for name, x in numbers.items()}
 
 
-class _Checked:
-    """Follows where a profile's code moves, and refuses what leaves the printer's reach."""
+def _commands(code: str, printer: Printer, where: str) -> list[Command]:
+    """Return the commands of a line, all of which the firmware reads."""
+    dialect = DIALECTS[printer.firmware]
+    found = commands(code, dialect)
+    if dialect.longest and len(code.strip()) > dialect.longest:
+        raise InputError(
+            f"{where}: has {len(code.strip())} characters; {dialect.title} reads {dialect.longest}"
+        )
+    return found if dialect.several or len(found) < 2 else _one(found, dialect.title, where)
 
-    def __init__(self, printer: Printer) -> None:
-        self.printer = printer
-        self.at: dict[str, float | None] = {"X": None, "Y": None, "Z": None}
-        self.relative: bool | None = False  # None where it is not known
-        bed = printer.bed
-        self.reach = {
-            "X": (bed.low[0], bed.high[0]),
-            "Y": (bed.low[1], bed.high[1]),
-            "Z": (0.0, bed.height),
-        }
 
-    def read(self, line: str, where: str) -> None:
-        """Check a line.
+def _one(found: list[Command], firmware: str, where: str) -> list[Command]:
+    names = " and ".join(command.name for command in found)
+    raise InputError(f"{where}: {names} stand on one line, of which {firmware} does only the first")
 
-        Raises:
-            InputError: it moves where the printer cannot, or a number is none.
-        """
-        code = re.sub(r"\(.*?\)", "", line.split(";", 1)[0]).strip()
-        code = NUMBER.sub("", code)
-        if code.upper().startswith(SHOWN):
-            return
-        for command in COMMAND.split(code):
-            self._read(command.strip(), where)
 
-    def _read(self, code: str, where: str) -> None:
-        if not code:
-            return
-        match = HEAD.match(code)
-        head = f"{match[1]}{match[2]}".upper() if match else code.split()[0].upper()
-        words = [(axis.upper(), text) for axis, text in TOKEN.findall(HEAD.sub("", code, count=1))]
-        if head in FORBIDDEN:
-            raise InputError(f"{where}: {head} {FORBIDDEN[head]}; leave it out")
-        if SYSTEM.fullmatch(head):
-            raise InputError(f"{where}: {head} {ORIGIN}; leave it out")
-        if head in ("G90", "G91"):
-            self.relative = head == "G91"
-        elif head == "G28":
-            self.at = dict.fromkeys(self.at)
-        elif head == "G10":  # alone it draws filament back
-            for axis, text in words:
-                if axis in "LXYZ":
-                    raise InputError(f"{where}: G10 {axis}{text} {ORIGIN}; leave it out")
-        elif head == "G92":
-            for axis, text in words:
-                if axis in self.at:
-                    raise InputError(f"{where}: G92 {axis}{text} {ORIGIN}; only G92 E is allowed")
-        elif not match:
-            self.relative = None
-            self.at = dict.fromkeys(self.at)
-        elif ARC.match(code):
-            raise InputError(f"{where}: an arc (G2, G3) cannot be checked; use straight moves")
-        elif MOVE.match(code):
-            self._move(MOVE.sub("", code, count=1), where)
+def _in_dialect(command: Command, printer: Printer, where: str) -> None:
+    dialect = DIALECTS[printer.firmware]
+    if not dialect.lower_case and command.is_code and command.text[0].islower():
+        raise InputError(
+            f"{where}: {dialect.title} does not read small letters; write {command.text.upper()}"
+        )
 
-    def _move(self, rest: str, where: str) -> None:
-        if GLUED.search(rest):  # 1E5 is X1 and E5 to some printers, 100000 to others
+
+def _lifts(command: Command, state: State, where: str) -> bool:
+    """Return whether a command lets a hot nozzle wait on the bed."""
+    low = state.least_z is not None and not state.clear
+    return low and command.name in heat.COMMANDS and heat.waits(command, state, where)
+
+
+def _off_bed(machine: Machine, settings: Settings, where: str) -> list[str]:
+    """Return the lines that lift the nozzle, and follow them."""
+    state, printer = machine.state, machine.printer
+    if not state.homed["Z"] or state.relative is None:
+        raise InputError(
+            f"{where}: heats the nozzle while it touches the bed; write a move off the bed before "
+            f"it, as G90 and {lift(settings, printer)}"
+        )
+    line = lift(settings, printer)
+    for command in commands(line, DIALECTS[printer.firmware]):
+        machine.run(command, where)
+    return [f"{line} ; SimuLearn: off the bed before the nozzle waits hot"]
+
+
+def _ready(state: State, printer: Printer) -> None:
+    """Make sure that a print can begin in a state."""
+    where = f"{printer.name}: code.start"
+    if printer.firmware == "sailfish" and None in state.at.values():
+        raise InputError(
+            f"{where}: where the axes are is not known to GPX; write G28, M132 X Y Z A B, and a "
+            f"move to X, Y and Z in absolute numbers (G90)"
+        )
+    for axis, homed in state.homed.items():
+        if homed is False:
+            raise InputError(f"{where}: does not home {axis}; write G28 into it")
+    if state.retracted:
+        raise InputError(f"{where}: draws filament back (G10) and does not push it back (G11)")
+
+
+def _ascii(code: str, where: str) -> None:
+    """Make sure that a line's code has only what printers read."""
+    for column, letter in enumerate(code, 1):
+        if letter != "\t" and not (letter.isascii() and letter.isprintable()):
+            shown = letter if letter.isprintable() else f"U+{ord(letter):04X}"
             raise InputError(
-                f"{where}: printers differ in how they read {rest.strip()}; put a space before E"
+                f"{where}, column {column}: {shown} is nothing that printers read; use plain ASCII"
             )
-        for axis, text in TOKEN.findall(rest):
-            axis = axis.upper()
-            if axis not in "XYZEFIJ":
-                continue
-            try:
-                value = float(text)
-            except ValueError as error:
-                raise InputError(f"{where}: {axis}{text} is not a number") from error
-            if not abs(value) <= 1e6:  # NaN compares false
-                raise InputError(f"{where}: {axis}{text} is not a number a printer can use")
-            if axis not in self.reach:
-                continue
-            if self.relative is None:
-                raise InputError(
-                    f"{where}: whether {axis}{text} is absolute or relative is not known after a "
-                    f"macro; write G90 or G91 before it"
-                )
-            if self.relative:
-                before = self.at[axis]
-                if before is None and axis == "Z" and value >= 0:
-                    continue  # up is safe from anywhere
-                if before is None:
-                    raise InputError(
-                        f"{where}: {axis}{text} is relative to a place that is not known here; "
-                        f"move there in absolute numbers (G90) first"
-                    )
-                value += before
-            least, most = self.reach[axis]
-            if not least - ROUNDING <= value <= most + ROUNDING:
-                raise InputError(
-                    f"{where}: leads to {axis} {value:g} mm; {self.printer.name} reaches "
-                    f"{least:g} to {most:g}"
-                )
-            self.at[axis] = value
+
+
+def _plain(comment: str) -> str:
+    """Return a comment in ASCII: letters without their accents, no other characters."""
+    text = unicodedata.normalize("NFKD", comment.replace("\t", " "))
+    return "".join(c for c in text if c.isascii() and c.isprintable()).rstrip()

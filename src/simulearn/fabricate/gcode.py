@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import ComputationError
+from simulearn.errors import ComputationError, InputError
 from simulearn.fabricate import markers
-from simulearn.fabricate.around import after, before, modes
-from simulearn.fabricate.code import Frame, filled
+from simulearn.fabricate.around import after, before, begin
+from simulearn.fabricate.code import end_code, frame_of, start_code
 from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.header import footer, header
 from simulearn.fabricate.moves import DIGITS, PRINT, RESTORE, RETRACT, TRAVEL, Moves
@@ -23,6 +23,7 @@ from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
 from simulearn.fabricate.thumbnail import thumbnails
 from simulearn.fabricate.toolpath import ACTIVE, BRIM, JOINT, PASSIVE, SHELL, SKIRT, Toolpath
+from simulearn.fabricate.zones import off_bed
 from simulearn.files import replacing
 from simulearn.grid import Message
 from simulearn.material import Material
@@ -76,28 +77,28 @@ def gcode(
     """
     check(moves, printer)
     bounds = path.bounds
-    frame = Frame(
-        low=tuple(bounds[0].tolist()),
-        high=tuple(bounds[1].tolist()),
-        last=tuple(moves.places[-1].tolist()),
-    )
+    frame = frame_of(path, moves)
     firmware = printer.firmware
     body = list(_body(path, moves, durations, settings, printer, names))
-    end = [*after(printer), *filled(printer, settings, frame, "end")]
-    start = list(filled(printer, settings, frame, "start"))
+    stop, end = list(after(printer)), end_code(printer, settings, frame).lines
+    if firmware == "reprap":
+        # From the end upwards, Duet Web Control takes what stands before a G90 for relative and
+        # finds no height; the moves of the print have left the machine in absolute coordinates.
+        stop, end = [line for line in stop if line != "G90"], _ended(end)
+    started = start_code(printer, settings, frame)
+    start = started.lines
     if firmware == "bambu" and not settings.bed:
         start = [line for line in start if not BED_OFF.match(line)]
-    if firmware == "reprap":
-        end = _ended(end)
     lines = [
         *header(path, bounds, estimated, settings, printer, material, names, notes, warnings),
         *thumbnails(path, firmware),
-        *modes(printer),
+        *begin(printer),
         *markers.definitions(path, names, firmware),
         *start,
-        *before(settings, printer),
+        *before(settings, printer, started.state),
         *markers.all_layers(path, firmware),
         *body,
+        *stop,
         *end,
         *footer(path, printer),
     ]
@@ -119,6 +120,7 @@ def check(moves: Moves, printer: Printer) -> None:
 
     Raises:
         ComputationError: one is not; nothing should be printed then.
+        InputError: whether the bed is round matters and is not known.
     """
     bed = printer.bed
     least, most = np.array([*bed.low, 0.0]), np.array([*bed.high, bed.height])
@@ -127,6 +129,15 @@ def check(moves: Moves, printer: Printer) -> None:
         raise ComputationError("a move is not a number; nothing was written")
     if ((moves.places < least - 1e-6) | (moves.places > most + 1e-6)).any():
         raise ComputationError(f"a move leaves the reach of {printer.name}; nothing was written")
+    prints = np.flatnonzero(moves.kind == PRINT)
+    begins, ends = moves.places[prints - 1, :2], moves.places[prints, :2]
+    if off_bed(begins, ends, bed).any():
+        raise ComputationError(
+            f"a bead leaves the bed of {printer.name} or meets one of its excluded zones; nothing "
+            f"was written"
+        )
+    if bed.shape_unclear and (np.hypot(*(ends - bed.middle).T) > bed.width / 2 + 1e-6).any():
+        raise InputError(f"the print is wider than a round bed; {bed.ask_shape()}")
     if (moves.filament[moves.kind == PRINT] < 0).any() or (moves.speeds <= 0).any():
         raise ComputationError("a bead would draw filament back; nothing was written")
 

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.fabricate.bed import place
 from simulearn.fabricate.build import build
+from simulearn.fabricate.code import code_messages, frame_of
 from simulearn.fabricate.estimate import Estimate, durations_of, estimate
 from simulearn.fabricate.gcode import gcode
 from simulearn.fabricate.moves import Moves, moves_of
-from simulearn.fabricate.printer import Printer
+from simulearn.fabricate.printer import Printer, untried
 from simulearn.fabricate.regions import footprint
 from simulearn.fabricate.settings import Settings, settings_of
 from simulearn.fabricate.short_strokes import short_strokes
@@ -164,10 +165,12 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
             f"{printer.bed.height:g} mm"
         )
     section, bed = materials[0].section, printer.bed
-    placed = place(cleaned, section, printer)
+    placed = place(cleaned, section, printer, settings.brim)
     path, from_build = build(placed, section, settings, bed)
     part = shapely.union_all([footprint(outline(grid, section)) for grid in placed])
     moves = moves_of(path, part, settings, np.array(bed.low), bed.height)
+    warnings += untried(printer)
+    warnings += code_messages(printer, settings, frame_of(path, moves))
     warnings += overridden + from_build
     warnings += short_strokes(path, moves, settings, printer, materials[0])
     return Job(tuple(placed), names, materials[0], printer, settings, path, moves, tuple(warnings))

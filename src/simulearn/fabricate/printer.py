@@ -8,7 +8,7 @@ the print then has a warning.
 import re
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BaseModel,
@@ -18,10 +18,12 @@ from pydantic import (
     TypeAdapter,
     ValidationError,
     field_validator,
+    model_validator,
 )
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
+from simulearn.grid import Message
 from simulearn.grid.arrays import shown
 from simulearn.material.material import Print
 
@@ -66,6 +68,35 @@ class Bed(_Table):
     shape: Literal["rectangle", "round"] | None = None
     excluded: list[_Box] = []
 
+    @model_validator(mode="after")
+    def _as_wide_as_deep(self) -> Self:
+        if self.shape == "round" and self.width != self.depth:
+            raise ValueError("a round bed is as deep as it is wide; both are its diameter")
+        return self
+
+    @property
+    def round(self) -> bool:
+        """Whether it is known to be round."""
+        return self.shape == "round"
+
+    @property
+    def shape_unclear(self) -> bool:
+        """Whether it may be round, and the profile does not say."""
+        return self.shape is None and self.origin == "centre" and self.width == self.depth
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Its middle, mm."""
+        return self.low[0] + self.width / 2, self.low[1] + self.depth / 2
+
+    def ask_shape(self) -> str:
+        """Return what to ask for where the shape matters and is not known."""
+        return (
+            f"a bed as deep as it is wide with its origin in the middle is often round: write "
+            f'shape = "round" or shape = "rectangle" under [bed] (a round one reaches '
+            f"{self.width / 2:g} mm from its middle)"
+        )
+
     @property
     def low(self) -> tuple[float, float]:
         """The corner with the least x and y, mm."""
@@ -102,7 +133,7 @@ class Temperatures(_Table):
 
 
 class Motion(_Table):
-    """How the machine moves; used for the estimate, nothing of it is written to the file.
+    """How the machine moves; accelerations and corner speed are written to the file.
 
     Attributes:
         speed: fastest in x and y, mm/min.
@@ -131,11 +162,19 @@ class Heating(_Table):
 
 
 class Code(_Table):
-    """Code before and after the print; words in braces are filled in (see docs/gcode.md)."""
+    """Code before and after the print; words in braces are filled in (see docs/printers.md).
+
+    Attributes:
+        start: before the print.
+        end: after it.
+        progress: whether the file says how far the print has come (M73).
+        limits: whether the file sets accelerations and corner speed.
+    """
 
     start: Annotated[str, Field(max_length=20000)]
     end: Annotated[str, Field(max_length=20000)]
     progress: bool = True
+    limits: bool = True
 
 
 class Printer(_Table):
@@ -171,6 +210,11 @@ class Printer(_Table):
     print: dict[str, float | bool] = {}
     code: Code
 
+    @property
+    def one_acceleration(self) -> bool:
+        """Whether the firmware has one acceleration for prints and travels: that of prints."""
+        return self.firmware == "klipper"
+
     @field_validator("print", mode="before")
     @classmethod
     def _overrides(cls, given: Any) -> dict[str, Any]:
@@ -188,6 +232,17 @@ class Printer(_Table):
             except ValidationError as error:
                 raise ValueError(f"{key}: {error.errors()[0]['msg']}") from error
         return checked
+
+
+def untried(printer: Printer) -> list[Message]:
+    """Return a warning where nobody has run a printer's profile on its machine."""
+    if printer.tried.strip():
+        return []
+    text = (
+        f"nobody has run the profile {printer.name} on its machine; before the first print read "
+        f"docs/printers.md, and keep a hand on the switch"
+    )
+    return [Message("untried", "tried", text)]
 
 
 def printers() -> list[str]:
@@ -235,7 +290,8 @@ def read_profile(text: str) -> Printer:
             raise InputError(
                 f"profile: base: is {shown(base)}; here it is one of {known}", "profile", "base"
             )
-        data = _merged(_with_base(_path(base)), data)
+        below = _with_base(_path(base))
+        data = _merged(_kept(below, data), data)
     return _printer(data, "profile")
 
 
@@ -276,7 +332,25 @@ def _with_base(path: Path, depth: int = 0) -> dict[str, Any]:
         raise InputError(f"{path}: base: is not the name of a printer or the path of its file")
     beside = path.parent / base
     below = _with_base(beside if beside.suffix == ".toml" else _path(base), depth + 1)
-    return _merged(below, data)
+    return _merged(_kept(below, data), data)
+
+
+def _kept(below: dict[str, Any], above: dict[str, Any]) -> dict[str, Any]:
+    """Return what a profile takes over from the one it begins from.
+
+    That somebody has printed with a profile says nothing about another one, the shape and the zones
+    of a bed nothing about one whose origin lies elsewhere, the reach nothing about one of another
+    size.
+    """
+    below = {key: value for key, value in below.items() if key != "tried"}
+    old, new = below.get("bed"), above.get("bed")
+    if not isinstance(old, dict) or not isinstance(new, dict):
+        return below
+    if new.get("origin", old.get("origin")) != old.get("origin"):
+        old = {key: value for key, value in old.items() if key not in ("shape", "excluded")}
+    if new.keys() & {"origin", "width", "depth", "height"}:
+        below = {key: value for key, value in below.items() if key != "reach"}
+    return below | {"bed": old}
 
 
 def _tables(text: str, place: str) -> dict[str, Any]:

@@ -14,13 +14,15 @@ import shapely
 from numpy.typing import NDArray
 
 from simulearn.fabricate.printer import Bed
-from simulearn.fabricate.regions import QUARTER, Plan
+from simulearn.fabricate.regions import Plan
 from simulearn.fabricate.settings import Settings
+from simulearn.fabricate.zones import room
 from simulearn.grid import Message
 
 Array = NDArray[np.float64]
 SKIRT_LEAST = 3.0  # mm; a skirt nearer to the grid is left out
 APART = 1.0  # mm; also one nearer to the brim
+QUARTER = 12  # segments of a quarter circle where a row turns about a corner
 GAP = 0.1  # mm between brim and grid, as makers of printers have it
 
 
@@ -62,12 +64,12 @@ def beside(plans: Sequence[Plan], settings: Settings, bed: Bed) -> Beside:
     """
     line = settings.line
     grids = [_filled(plan.union) for plan in plans]
-    least, most = np.reshape(shapely.bounds(shapely.union_all(grids)), (2, 2))
-    room = float(min((least - bed.low).min(), (bed.high - most).min()))
+    everything = shapely.union_all(grids)
+    free = room(everything, bed)
     messages = []
 
     wanted = max(1, round(settings.brim / line)) if settings.brim else 0
-    rows = min(wanted, max(0, floor((room - GAP) / line + 1e-6)))
+    rows = min(wanted, max(0, floor((free - GAP) / line + 1e-6)))
     if rows < wanted:
         text = f"the brim is {rows * line:.1f} mm wide instead of {settings.brim:g}"
         text = text if rows else "there is no room for a brim"
@@ -78,7 +80,8 @@ def beside(plans: Sequence[Plan], settings: Settings, bed: Bed) -> Beside:
     if rows:
         least_away = GAP + rows * line + APART
     wished = max(settings.skirt_distance, least_away)
-    away = min(wished, room - line)
+    hull = shapely.convex_hull(everything)
+    away = min(wished, room(hull, bed) - line)
     if away < least_away:
         primes = "the brim primes the nozzle" if rows else "prime the nozzle by hand"
         text = f"there is no room for a skirt on the bed; {primes}"
@@ -87,8 +90,7 @@ def beside(plans: Sequence[Plan], settings: Settings, bed: Bed) -> Beside:
         text = f"the skirt is {away:.1f} mm out instead of {settings.skirt_distance:g}: "
         text += "the bed ends there" if away < wished else "the brim is in between"
         messages.append(Message("skirt", "bed", text))
-    hull = shapely.convex_hull(shapely.union_all(grids))
-    ring = shapely.get_coordinates(shapely.buffer(hull, away + line / 2, quad_segs=8))
+    ring = shapely.get_coordinates(shapely.buffer(hull, away + line / 2, quad_segs=QUARTER))
     return Beside([Ring(-1, ring)], brim, messages)
 
 
