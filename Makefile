@@ -6,6 +6,7 @@ BIN := $(VENV)/bin
 UV := $(shell command -v uv 2>/dev/null)
 INSTALL := $(if $(UV),$(UV) pip install --quiet --python $(BIN)/python,$(BIN)/python -m pip install --quiet --disable-pip-version-check)
 
+PROCESSES := 2
 # Small matrices gain nothing from threads; two test processes would only fight over the cores.
 ONE_THREAD := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 \
 	XLA_FLAGS="--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
@@ -15,7 +16,7 @@ KERNELS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/.pytest_cache/jax JAX_PERSISTENT_
 CORE := tests/material tests/grid tests/simulate tests/fea/test_trial.py tests/mechanics/test_poses.py \
 	tests/mechanics/test_topology.py tests/test_native.py tests/test_api.py
 
-.PHONY: demo test test-core lint bench pictures clean
+.PHONY: demo test test-core packages lint bench pictures clean
 
 demo: $(VENV)/ready
 	mkdir -p out
@@ -26,7 +27,12 @@ test: $(VENV)/ready
 
 # The core of the suite with another Python: make test-core PYTHON=python3.13 VENV=.venv-3.13
 test-core: $(VENV)/ready
-	$(ONE_THREAD) $(BIN)/python -m pytest -n 2 --dist worksteal $(CORE)
+	$(ONE_THREAD) $(BIN)/python -m pytest -n $(PROCESSES) --dist worksteal $(CORE)
+
+# The wheel and the sdist, in fresh environments of each Python outside the checkout; needs uv.
+packages: $(VENV)/ready
+	SIMULEARN_REQUIRE=uv SIMULEARN_PYTHONS="$(shell .ci/pythons 3.11 3.12 3.13)" \
+		$(BIN)/python -m pytest -n $(PROCESSES) --dist worksteal tests/packages
 
 lint: $(VENV)/ready
 	$(BIN)/ruff check .

@@ -99,6 +99,18 @@ DROP = """([name, text]) => {
   document.querySelector(".page").dispatchEvent(
     new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer }));
 }"""
+OWN = """base = "voron"
+name = "delta"
+title = "Delta in the workshop"
+sources = []
+
+[bed]
+shape = "round"
+width = 240.0
+depth = 240.0
+origin = "centre"
+excluded = [[[80.0, -120.0], [120.0, -60.0]]]
+"""
 # As people draw: lines that end short of others, run past them, cross them and end on them.
 SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" viewBox="0 0 195 130"
   xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" width="195mm" height="130mm">
@@ -163,7 +175,19 @@ def printing(page: Page) -> None:
     """The toolpath."""
     tab(page, "Print")
     page.get_by_text("Filament").first.wait_for(timeout=SECONDS)
+    page.get_by_role("slider", name="Layer").fill("1")
+    page.locator(".side-body").evaluate("(panel) => { panel.scrollTop = 0; }")
     page.wait_for_timeout(1500)
+
+
+def profile(page: Page) -> None:
+    """The first layer on a printer of one's own, whose bed is round and has an empty zone."""
+    printing(page)
+    page.evaluate(DROP, ["delta.toml", OWN])
+    page.get_by_text("Round bed").wait_for(timeout=SECONDS)
+    page.get_by_role("switch", name="Show travels").check()
+    page.locator(".notice").get_by_role("button", name="Close").click()
+    page.wait_for_timeout(2500)
 
 
 def export(page: Page) -> None:
@@ -189,6 +213,7 @@ STATES: dict[str, tuple[tuple[int, int], Shot]] = {
     "search": (WIDE, search),
     "check": (WIDE, check),
     "print": (WIDE, printing),
+    "profile": (WIDE, profile),
     "export": (WIDE, export),
     "keys": (WIDE, keys),
     "tablet": (TABLET, start),
@@ -205,9 +230,7 @@ def opened(browser: Browser, url: str, size: tuple[int, int], theme: str) -> Pag
     )
     page = context.new_page()
     page.goto(url)
-    page.wait_for_function(
-        "() => import('/page/store.js').then(({ state }) => state.answer !== null)", timeout=SECONDS
-    )
+    page.get_by_role("contentinfo").get_by_text("Valid, ").wait_for(timeout=SECONDS)
     page.wait_for_timeout(1500)
     return page
 

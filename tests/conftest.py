@@ -3,6 +3,7 @@
 import shutil
 import sys
 
+import jax
 import pytest
 
 from requiring import required
@@ -12,6 +13,12 @@ from simulearn.compiled import make_room
 PATIENCE = 15_000  # ms that something may take on a busy machine
 ERRORS_OF_OTHERS = ("favicon",)
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def quick_to_compile():
+    """Compiling for speed takes longer than what tests compile runs."""
+    jax.config.update("jax_disable_most_optimizations", True)
 
 
 @pytest.fixture(scope="module", autouse=True)

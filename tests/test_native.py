@@ -69,6 +69,16 @@ def test_two_processes_share_an_empty_cache(tmp_path):
 
 
 @linux
+def test_equal_sources_share_their_kernels_wherever_they_lie(tmp_path):
+    """As a checkout, an installed package and its next version in another environment do."""
+    cache, here, there = tmp_path / "cache", tmp_path / "here", tmp_path / "there"
+    for folder in (cache, here, there):
+        folder.mkdir()
+    assert ended(begun(folder_of(here, 2.0), cache)) == ["42.0", "1", "unset"]
+    assert ended(begun(folder_of(there, 2.0), cache)) == ["42.0", "0", "unset"]
+
+
+@linux
 def test_an_edited_kernel_is_another_one(tmp_path):
     cache = tmp_path / "cache"
     cache.mkdir()

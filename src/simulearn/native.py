@@ -6,7 +6,7 @@ of the compiler, names the folder in which they are kept. Nothing of the host pr
 """
 
 import hashlib
-import threading
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -17,12 +17,9 @@ import llvmlite
 import numba
 import numpy as np
 from numba.core import event
-from numba.core.caching import FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
 
 from simulearn.files import cache_folder
-
-_decorating = threading.Lock()
-_settings: Any = numba.config
 
 
 def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -39,24 +36,52 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
         wrappers = {"no_cfunc_wrapper": True, "no_cpython_wrapper": not entry}
         settings: Any = {"nogil": True, "error_model": "numpy", **wrappers, **options}
         compile_: Any = numba.njit(**settings)(function)
-        folder = _folder(Path(function.__code__.co_filename).parent) if entry else None
-        if folder is not None:
-            with _decorating:  # Numba asks a setting of the whole process for the folder
-                before = _settings.CACHE_DIR
-                _settings.CACHE_DIR = str(folder)
-                try:
-                    compile_._cache = _Kernels(function)
-                except (RuntimeError, OSError):
-                    pass  # the folder cannot be written: every process compiles for itself
-                finally:
-                    _settings.CACHE_DIR = before
+        if entry:
+            with suppress(RuntimeError, OSError):  # no folder: every process compiles for itself
+                compile_._cache = _Kernels(function)
         return compile_
 
     return decorate
 
 
+class _Place:
+    """Where a function's kernels are kept; Numba knows a folder by its path, we by its contents."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        self._py_file, self._line = function.__code__.co_filename, function.__code__.co_firstlineno
+        self._folder = folder
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> "_Place | None":
+        """Return the place of a function, None where there is no folder."""
+        folder = _folder(Path(file).parent)
+        return None if folder is None else cls(function, folder)
+
+    def ensure_cache_path(self) -> None:
+        """Make the folder again, should somebody have emptied the cache meanwhile."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+
+    def get_cache_path(self) -> str:
+        """Return the folder of the kernels."""
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """Return what tells an edited source from the old one: the name of the folder does."""
+        return self._folder.name
+
+    def get_disambiguator(self) -> str:
+        """Return what tells functions of one name in one file apart."""
+        return str(self._line)
+
+
+class _Placed(CompileResultCacheImpl):
+    _locator_classes = [_Place]  # noqa: RUF012  (of the base class, too)
+
+
 class _Kernels(FunctionCache):
     """The kernels of a function on disk; what cannot be read or written is done without."""
+
+    _impl_class = _Placed
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return a kernel, None where there is none or its file is torn."""
@@ -100,7 +125,10 @@ class _Listener(event.Listener):
 
 @cache
 def _folder(source: Path) -> Path | None:
-    """Return the folder that keeps the kernels of a source folder, or None where there is none."""
+    """Return the folder that keeps the kernels of a source folder, None where none can be written.
+
+    Equal sources share it, wherever they lie: those of a checkout and of an installed package.
+    """
     base = cache_folder()
     if base is None:
         return None
@@ -108,4 +136,9 @@ def _folder(source: Path) -> Path | None:
     digest = hashlib.sha256(versions.encode())
     for file in sorted(source.glob("*.py")):
         digest.update(file.name.encode() + b"\0" + file.read_bytes() + b"\0")
-    return base / "native" / digest.hexdigest()[:16]
+    folder = base / "native" / digest.hexdigest()[:16]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return None
+    return folder if os.access(folder, os.W_OK) else None

@@ -3,12 +3,12 @@
 All files are checked before anything is computed: a wrong name should not cost a simulation.
 """
 
-import importlib.util
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
 
 from simulearn.errors import Cancel, InputError, stop_if
+from simulearn.extras import require
 from simulearn.files import replacing
 from simulearn.simulate import Result, write_json, write_npz
 
@@ -91,12 +91,7 @@ WRITERS: dict[str, Writer] = {
     ".vtu": _vtu,
     ".pvd": _pvd,
 }
-NEEDS = {  # ending -> package, extra
-    ".html": ("nicegui", "studio"),
-    ".3dm": ("rhino3dm", "rhino"),
-    ".vtu": ("meshio", "vtk"),
-    ".pvd": ("meshio", "vtk"),
-}
+NEEDS = {".html": "nicegui", ".3dm": "rhino3dm", ".vtu": "meshio", ".pvd": "meshio"}
 FILMS = (".mp4", ".webm")
 
 
@@ -142,9 +137,8 @@ def check_package(path: Path, ending: str) -> None:
     Raises:
         InputError: a package or program is missing; the message says how to install it.
     """
-    if ending in NEEDS and importlib.util.find_spec(NEEDS[ending][0]) is None:
-        text = f"{path}: needs a package: pip install 'simulearn[{NEEDS[ending][1]}]'"
-        raise InputError(text, "package-missing")
+    if ending in NEEDS:
+        require(f"{path}: needs", NEEDS[ending])
     if ending in FILMS:
         from simulearn.show.video import ffmpeg
 

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from simulearn.fabricate import extrusion, load_printer, prepare
 from simulearn.fabricate.estimate import _corners, _times, durations_of
+from simulearn.fabricate.moves import PRINT
 from simulearn.fabricate.settings import settings_of
+from simulearn.fabricate.short_strokes import mean_speeds
 from simulearn.grid import make
 from simulearn.material import load_material
 
@@ -120,3 +122,52 @@ def test_filament_in_three_units_and_heating_apart():
     assert needs.filament_mm == pytest.approx(1000 * needs.filament_cm3 / (pi * 1.75**2 / 4))
     assert needs.heating_seconds == pytest.approx((205 - 20) / 2.0)
     assert needs.seconds == pytest.approx(job.durations.sum())
+
+
+SMALL = make("twist", (1, 1), 50.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "warned"),
+    [("stacker-s4", False), ("bambu-x1", False), ("voron", False), ("ender-3", True)],
+)
+def test_a_machine_that_lays_short_strokes_slower_than_the_calibration_says_so(name, warned):
+    job = prepare([SMALL], load_printer(name))
+    messages = [w.message for w in job.warnings if w.code == "short-strokes"]
+    assert len(messages) == warned
+    if warned:
+        assert "at 27.8 mm/s on average; the curl was calibrated with 34.4 mm/s" in messages[0]
+        assert "acceleration 500 instead of 1000" in messages[0]
+
+
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [
+        ({"acceleration": 3000.0}, "acceleration 3000 instead of 1000"),
+        ({"speed_fill": 1800.0}, "speed 1800 instead of 3000"),
+        ({"corner_speed": 0.5}, "corner speed 0.5 instead of 8"),
+    ],
+)
+def test_settings_that_change_the_speed_of_short_strokes_are_warned_about(settings, reason):
+    printer = load_printer("voron")
+    motion = printer.motion.model_copy(update={"corner_speed": 8.0})
+    printer = printer.model_copy(update={"print": printer.print | settings, "motion": motion})
+    (message,) = (
+        w.message for w in prepare([SMALL], printer).warnings if w.code == "short-strokes"
+    )
+    assert reason in message
+
+
+def test_the_mean_speed_of_short_strokes_is_length_over_time():
+    job = prepare([SMALL], load_printer("ender-3"))
+    here, calibrated = mean_speeds(job.path, job.moves, job.settings, job.printer, job.material)
+    beads = [bead for layer in job.path.layers for bead in layer.beads]
+    layer = np.repeat(np.arange(16), [len(q.beads) for q in job.path.layers])
+    length = seconds = 0.0
+    for k, bead in enumerate(beads):
+        if layer[k] and bead.role in ("passive", "joint"):
+            moves = (job.moves.bead == k) & (job.moves.kind == PRINT)
+            length += bead.lengths.sum()
+            seconds += job.durations[moves].sum()
+    assert here == pytest.approx(length / seconds, rel=1e-6)
+    assert here < calibrated < 50.0

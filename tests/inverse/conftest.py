@@ -1,6 +1,5 @@
 """A problem that a toy answers, and a small task for real engines."""
 
-import jax
 import pytest
 from toys import alone, toy
 
@@ -8,15 +7,6 @@ from simulearn.grid import Grid, Rules, draw_valid, grid_to_dict, make
 from simulearn.inverse import Goals, Space
 from simulearn.inverse.problem import Problem
 from simulearn.inverse.task import Free
-
-
-@pytest.fixture(scope="module", autouse=True)
-def quick_to_compile():
-    """Compiling for speed takes longer than what is compiled here runs."""
-    before = jax.config.read("jax_disable_most_optimizations")
-    jax.config.update("jax_disable_most_optimizations", True)
-    yield
-    jax.config.update("jax_disable_most_optimizations", before)
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 import equinox as eqx
-import jax
 import pytest
 from conformance import designs_like
 
@@ -29,15 +28,6 @@ SMALL = {
     "rate": 1e-2,
     "phases": [{"epochs": 30, "unroll": 10, "noise": 0.0, "batch": 6}],
 }
-
-
-@pytest.fixture(scope="module", autouse=True)
-def quick_to_compile():
-    """Compiling for speed takes longer than what is compiled here runs."""
-    before = jax.config.read("jax_disable_most_optimizations")
-    jax.config.update("jax_disable_most_optimizations", True)
-    yield
-    jax.config.update("jax_disable_most_optimizations", before)
 
 
 @pytest.fixture(scope="session")

@@ -18,7 +18,7 @@ from simulearn.mechanics.poses import Pose
 from simulearn.mechanics.rollout import half_beams_at, loads
 from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.stiffness import exact_stiffness
-from simulearn.mechanics.topology import Topology, flat_geometry, topologies
+from simulearn.mechanics.topology import flat_geometry, topologies
 from simulearn.schedule import SCHEDULE
 
 PLA = load_material("pla-hot-water")
@@ -49,21 +49,29 @@ def native(grid: Grid, section_model=None, **options):
     return design, trace(design, schedule_frames(len(grid.beams), PLA), **options)
 
 
+@jax.jit
+def balance(topology, joints, ratio, state, frame):
+    """Return forces, exact stiffness and twists of a state, as the reference in JAX has them."""
+    geometry = flat_geometry(topology, joints, PLA.section)
+    gravity = jnp.asarray(SCHEDULE.gravity(PLA.creep.amplitude))[frame]
+    released = jnp.asarray(SCHEDULE.released)[frame]
+    half_beams = half_beams_at(
+        first_guess(PLA), topology, geometry, ratio, loads(PLA), released, gravity
+    )
+    at = topology, half_beams, state
+    return forces(*at), exact_stiffness(*at), twists(*at)
+
+
 def reference(grid: Grid, path, frame: int):
-    """Half-beams, state, and topology of a frame, as the reference in JAX has them."""
+    """The reference's forces, stiffness and twists where a path is in a frame."""
     grid = grid.centred
     many = topologies(grid.beams, grid.fixed, grid.joints[None])
-    topology = Topology(*(x[0] for x in many))
-    geometry = flat_geometry(topology, jnp.asarray(grid.joints), PLA.section)
-    gravity = SCHEDULE.gravity(PLA.creep.amplitude)[frame]
-    half_beams = half_beams_at(
-        first_guess(PLA), topology, geometry, jnp.asarray(grid.actuators), loads(PLA),
-        jnp.array(SCHEDULE.released[frame]), jnp.array(gravity),
-    )  # fmt: skip
+    topology = jax.tree.map(lambda x: x[0], many)
     count = len(grid.joints)
-    R, p = jnp.asarray(path.R[frame].reshape(-1, 3, 3)), jnp.asarray(path.p[frame])
+    R, p = path.R[frame].reshape(-1, 3, 3), path.p[frame]
     state = BeamState(Pose(R[:count], p[:count]), Pose(R[count:], p[count:]))
-    return topology, half_beams, state
+    there = balance(topology, grid.joints, grid.actuators, state, frame)
+    return jax.tree.map(np.asarray, there)
 
 
 @pytest.mark.parametrize("kind", GRIDS)
@@ -72,21 +80,19 @@ def test_states_are_equilibria_of_the_reference(kind, frame):
     grid = GRIDS[kind]()
     _, path = native(grid, tolerance=1e-9)
     assert path.ended
-    topology, half_beams, state = reference(grid, path, frame)
-    out = forces(topology, half_beams, state)
-    left = np.concatenate([np.asarray(out.joints).ravel(), np.asarray(out.middles).ravel()])
+    out, stiffness, d = reference(grid, path, frame)
+    left = np.concatenate([out.joints.ravel(), out.middles.ravel()])
     left[6 * grid.fixed : 6 * grid.fixed + 6] = 0
-    motion = np.linalg.solve(np.asarray(exact_stiffness(topology, half_beams, state)), left)
+    motion = np.linalg.solve(stiffness, left)
     turns = motion.reshape(-1, 6)
     moved = turns[:, :3] + np.cross(turns[:, 3:], path.p[frame])
     assert np.abs(moved).max() < 1e-8  # mm
-    d = np.asarray(twists(topology, half_beams, state))
     np.testing.assert_allclose(path.twists[frame], d, atol=1e-9)
 
 
 def falling(grid: Grid, path, frame: int) -> int:
     """Number of directions in which the energy falls, by eigenvalues of the dense stiffness."""
-    stiffness = np.asarray(exact_stiffness(*reference(grid, path, frame)))
+    stiffness = reference(grid, path, frame)[1]
     return int((np.linalg.eigvalsh((stiffness + stiffness.T) / 2) < 0).sum())
 
 
@@ -122,7 +128,7 @@ def test_logarithms_are_right_beyond_two_radians():
     from simulearn.mechanics.poses import exp_se3, log_se3
 
     x = jnp.array([[3.0, -2.0, 1.0, 1.9, -1.7, 1.2], [1.0, 2.0, 3.0, 0.01, 0.0, 0.0]])
-    np.testing.assert_allclose(log_se3(exp_se3(x)), x, atol=1e-6)
+    np.testing.assert_allclose(jax.jit(lambda y: log_se3(exp_se3(y)))(x), x, atol=1e-6)
 
 
 def test_outlines_agree_with_the_geometry():
@@ -137,5 +143,5 @@ def test_derivatives_hold_at_small_angles():
     from simulearn.mechanics.poses import exp_se3, log_se3
 
     x = jnp.array([0.3, 0.1, -0.2, 0.02, 0.1, 0.27])
-    slope = jax.jacobian(lambda y: log_se3(exp_se3(y)))(x)
+    slope = jax.jit(jax.jacobian(lambda y: log_se3(exp_se3(y))))(x)
     np.testing.assert_allclose(slope, np.eye(6), atol=1e-8)

@@ -36,7 +36,6 @@ def chain(count, length, stiffness, angle=0.0):
         *(np.zeros((count + 1, 4), np.int64) for _ in range(4)),
         np.zeros((2, count), np.int64),
     )
-    turn = lambda a: np.asarray(exp_so3(jnp.stack([0 * a, 0 * a, a], -1)))  # noqa: E731
     at = np.linspace(0, angle, 2 * count + 1)
     radius = length / angle if angle else None
     place = (
@@ -44,16 +43,13 @@ def chain(count, length, stiffness, angle=0.0):
         if radius
         else np.stack([np.linspace(0, length, 2 * count + 1), 0 * at, 0 * at], -1)
     )
-    R = turn(jnp.asarray(at))
-    state = BeamState(
-        Pose(jnp.asarray(R[::2]), jnp.asarray(place[::2])),
-        Pose(jnp.asarray(R[1::2]), jnp.asarray(place[1::2])),
-    )
+    c, s, o = np.cos(at), np.sin(at), np.zeros_like(at)
+    R = np.stack([c, -s, o, s, c, o, o, o, o + 1], -1).reshape(-1, 3, 3)
+    state = BeamState(Pose(R[::2], place[::2]), Pose(R[1::2], place[1::2]))
     flip = np.diag([-1.0, -1.0, 1.0])
-    frame = jnp.asarray(np.broadcast_to(np.stack([np.eye(3), flip])[:, None], (2, count, 3, 3)))
-    here = halves(topology, state)
-    face = jnp.zeros((2, count, 3))
-    rest = (here.joint @ Pose(frame, face)).inverse @ here.middle
+    frame = np.broadcast_to(np.stack([np.eye(3), flip])[:, None], (2, count, 3, 3))
+    face = np.zeros((2, count, 3))
+    rest = resting(topology, state, frame, face)
     # The compliance of a straight half, seen from its middle.
     half = piece / 2
     soft = np.zeros((6, 6))
@@ -65,15 +61,22 @@ def chain(count, length, stiffness, angle=0.0):
         topology,
         HalfBeams(
             rest,
-            jnp.broadcast_to(jnp.linalg.inv(jnp.asarray(soft)), (2, count, 6, 6)),
+            np.broadcast_to(np.linalg.inv(soft), (2, count, 6, 6)),
             face,
             frame,
-            jnp.full(count, half),
-            jnp.array(0.0),
-            jnp.zeros(count + 1),
+            np.full(count, half),
+            np.array(0.0),
+            np.zeros(count + 1),
         ),
         state,
     )
+
+
+@jax.jit
+def resting(topology, state, frame, face):
+    """Return the poses of the middles seen from the faces."""
+    here = halves(topology, state)
+    return (here.joint @ Pose(frame, face)).inverse @ here.middle
 
 
 @jax.jit
@@ -106,9 +109,10 @@ def newton(topology, half_beams, state):
 def loaded(topology, half_beams, state, steps, lift):
     """Return the states under a force upwards at the last joint that rises to `lift`."""
     out = []
-    topology = jax.tree.map(jnp.asarray, topology)
     for step in range(1, steps + 1):
-        here = half_beams._replace(weight=half_beams.weight.at[-1].set(-lift * step / steps))
+        weight = half_beams.weight.copy()
+        weight[-1] = -lift * step / steps
+        here = half_beams._replace(weight=weight)
         for _ in range(60):
             state, way = newton(topology, here, state)
             if way < 1e-9:
@@ -159,31 +163,48 @@ def test_a_curved_rest_is_taken_up_at_once():
     """A piece with constant rest strain is exact whatever the angle."""
     topology, half_beams, state = chain(2, 60.0, STIFF, 1.5)
     straight = chain(2, 60.0, STIFF)[2]
-    found, way = iterate(topology, half_beams, straight, 1e-10, 80)
+    found, way = jax.jit(iterate, static_argnums=(3, 4))(topology, half_beams, straight, 1e-10, 80)
     assert way < 1e-10
     np.testing.assert_allclose(found.joints.p, state.joints.p, atol=1e-8)
 
 
 @pytest.fixture(scope="module")
-def grid():
+def solved():
+    """A design, its topology, and a function that rolls it out and differentiates what it finds.
+
+    The function of joints, ratios and section model returns ((value, what it comes from), slopes).
+    All tests call the same one, since it takes long to compile.
+    """
     design = draw_valid(Rules(), 2, 5)[0].centred
     topology = jax.tree.map(
-        lambda x: x[0], topologies(design.beams, design.fixed, design.joints[None])
+        lambda x: jnp.asarray(x[0]), topologies(design.beams, design.fixed, design.joints[None])
     )
-    geometry = flat_geometry(topology, jnp.asarray(design.joints), PLA.section)
-    return design, topology, geometry
+    weight = jnp.linspace(0.3, 1.0, 3 * len(design.joints)).reshape(-1, 3)
+
+    def value(joints, ratio, section_model):
+        geometry = flat_geometry(topology, joints, PLA.section)
+        every = every_frame(section_model, topology, geometry, ratio, LOAD)
+        states, motions = rollout(topology, geometry, every, 1e-10, 80)
+        one = (states.joints.p[-1] * weight).sum() + states.middles.R[4].sum()
+        return one, (every, states, motions)
+
+    return design, topology, jax.jit(jax.value_and_grad(value, (0, 1, 2), has_aux=True))
 
 
-def test_forces_are_the_slope_of_the_energy(grid):
+@pytest.fixture(scope="module")
+def found(solved):
+    """Where it is rolled out, and all that is found there."""
+    design, _, function = solved
+    at = jax.tree.map(np.asarray, (design.joints, design.actuators, first_guess(PLA)))
+    (_, (every, states, motions)), slopes = function(*at)
+    assert motions.max() < 1e-9
+    return at, every, states, slopes
+
+
+def test_forces_are_the_slope_of_the_energy(solved, found):
     """Elastic energy and weight, at a state far from equilibrium."""
-    design, topology, geometry = grid
-    ratio = jnp.asarray(design.actuators)
-    half_beams = jax.tree.map(
-        lambda x: x[6], every_frame(first_guess(PLA), topology, geometry, ratio, LOAD)
-    )
-    states, _ = rollout(
-        topology, geometry, every_frame(first_guess(PLA), topology, geometry, ratio, LOAD)
-    )
+    topology, (_, every, states, _) = solved[1], found
+    half_beams = jax.tree.map(lambda x: x[6], every)
     state = jax.tree.map(lambda x: x[3], states)
 
     def energy(joints, middles):
@@ -200,60 +221,36 @@ def test_forces_are_the_slope_of_the_energy(grid):
         elastic = jnp.einsum("hbi,hbij,hbj->", d, half_beams.stiffness, d) / 2
         return elastic + sag.sum() + (half_beams.weight * at.joints.p[:, 2]).sum()
 
-    zero = jnp.zeros((len(geometry.centre), 6)), jnp.zeros((len(ratio), 6))
-    slope = jax.grad(energy, (0, 1))(*zero)
-    told = forces(topology, half_beams, state)
+    zero = jax.tree.map(lambda x: jnp.zeros((len(x), 6)), (state.joints.p, state.middles.p))
+    slope = jax.jit(jax.grad(energy, (0, 1)))(*zero)
+    told = jax.jit(forces)(topology, half_beams, state)
     for a, b in zip(told, slope, strict=True):
         np.testing.assert_allclose(a, b, atol=2e-5 * float(jnp.abs(b).max()))
 
 
-def test_the_exact_stiffness_is_how_forces_change(grid):
-    design, topology, geometry = grid
-    ratio = jnp.asarray(design.actuators)
-    every = every_frame(first_guess(PLA), topology, geometry, ratio, LOAD)
-    states, motions = rollout(topology, geometry, every, 1e-9)
-    assert motions.max() < 1e-9
-    half_beams, state = (jax.tree.map(lambda x: x[8], tree) for tree in (every, states))
-    matrix = np.asarray(exact_stiffness(topology, half_beams, state))
-    count = 6 * len(geometry.centre)
+def test_the_exact_stiffness_is_how_forces_change(solved, found):
+    design, topology, _ = solved
+    half_beams, state = (jax.tree.map(lambda x: x[8], tree) for tree in found[1:3])
+    matrix = np.asarray(jax.jit(exact_stiffness)(topology, half_beams, state))
+    count = 6 * len(design.joints)
     rng = np.random.default_rng(0)
     step = rng.normal(size=len(matrix)) * 1e-5
     held = 6 * design.fixed + np.arange(6)
     step[held] = 0
 
+    @jax.jit
     def out(scale):
-        at = moved(
-            state,
-            jnp.asarray(scale * step[:count].reshape(-1, 6)),
-            jnp.asarray(scale * step[count:].reshape(-1, 6)),
-        )
-        joints, middles = forces(topology, half_beams, at)
-        return np.concatenate([joints.ravel(), middles.ravel()])
+        joints, middles = jnp.split(scale * step, [count])
+        at = moved(state, joints.reshape(-1, 6), middles.reshape(-1, 6))
+        return jnp.concatenate([x.ravel() for x in forces(topology, half_beams, at)])
 
-    measured = (out(1.0) - out(-1.0)) / 2
+    measured = np.asarray(out(1.0) - out(-1.0)) / 2
     measured[held] = 0
     np.testing.assert_allclose(matrix @ step, measured, atol=1e-4 * abs(measured).max())
 
 
-def test_equilibria_are_differentiated_exactly(grid):
-    """Through joints' places, actuators and the section_model, to 1e-6 of central differences."""
-    design, topology, _ = grid
-    weight = jnp.linspace(0.3, 1.0, 3 * len(design.joints)).reshape(-1, 3)
-
-    @jax.jit
-    def value(joints, ratio, section_model):
-        geometry = flat_geometry(topology, joints, PLA.section)
-        states, _ = rollout(
-            topology,
-            geometry,
-            every_frame(section_model, topology, geometry, ratio, LOAD),
-            1e-10,
-            80,
-        )
-        return (states.joints.p[-1] * weight).sum() + states.middles.R[4].sum()
-
-    at = jnp.asarray(design.joints), jnp.asarray(design.actuators), first_guess(PLA)
-    slopes = jax.jit(jax.grad(value, (0, 1, 2)))(*at)
+def test_equilibria_are_differentiated_exactly(solved, found):
+    function, (at, _, _, slopes) = solved[2], found
     rng = np.random.default_rng(0)
     busy = np.asarray(at[1]) != 0  # at 0 an actuator changes halves: there is a corner
     motions = (
@@ -265,7 +262,7 @@ def test_equilibria_are_differentiated_exactly(grid):
 
         def ahead(h, k=k):
             there = jax.tree.map(lambda x, w: x + h * w, at[k], motions[k])
-            return float(value(*at[:k], there, *at[k + 1 :]))
+            return float(function(*at[:k], there, *at[k + 1 :])[0][0])
 
         measured = (ahead(1e-4) - ahead(-1e-4)) / 2e-4
         pairs = zip(jax.tree.leaves(slopes[k]), jax.tree.leaves(motions[k]), strict=True)

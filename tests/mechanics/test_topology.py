@@ -1,7 +1,6 @@
 """The flat grid of mechanics is that of `grid.outline`, for many designs at once."""
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -12,6 +11,11 @@ from simulearn.mechanics.topology import flat_geometry, topologies
 SECTION = load_material("pla-hot-water").section
 
 
+@jax.jit
+def flat(topology, joints):
+    return flat_geometry(topology, joints, SECTION)
+
+
 def check(grids: list[Grid]) -> None:
     joints = np.stack([g.joints for g in grids])
     topology = topologies(grids[0].beams, grids[0].fixed, joints)
@@ -19,15 +23,15 @@ def check(grids: list[Grid]) -> None:
         shape = outline(grid, SECTION)
         one = jax.tree.map(lambda x, t=t: x[t], topology)
         np.testing.assert_array_equal(one.side.T, shape.sides)
-        geometry = flat_geometry(one, jnp.asarray(grid.joints), SECTION)
-        corners = np.asarray(geometry.centre)[:, None] + np.asarray(geometry.corners)
+        geometry = jax.tree.map(np.asarray, flat(one, grid.joints))
+        corners = geometry.centre[:, None] + geometry.corners
         np.testing.assert_allclose(corners[:, :4, :2], shape.joints, atol=1e-9)
-        ends = np.asarray(geometry.centre)[one.ends] + np.asarray(geometry.face)
+        ends = geometry.centre[one.ends] + geometry.face
         np.testing.assert_allclose(
             ends[..., :2], shape.beams.mean(axis=2).swapaxes(0, 1), atol=1e-9
         )
-        middle = np.asarray(geometry.middle)[:, None] + np.einsum(
-            "bij,bcj->bci", np.asarray(geometry.frame)[0], np.asarray(geometry.section)
+        middle = geometry.middle[:, None] + np.einsum(
+            "bij,bcj->bci", geometry.frame[0], geometry.section
         )
         np.testing.assert_allclose(middle[:, :2, :2], shape.beams.mean(axis=1), atol=1e-9)
 

@@ -124,3 +124,84 @@ def test_the_shape_and_the_list_select_too(twist):
     do.shape(twist).get_by_role("application").focus()
     do.parts(twist).get_by_role("option", name=re.compile("^Joint 2,")).click(modifiers=["Control"])
     expect(twist.get_by_role("heading", name="1 joint, 1 beam")).to_be_visible()
+
+
+def test_shift_selects_more_and_keys_change_all(twist):
+    do.click(twist, (32, 65))
+    twist.keyboard.down("Shift")
+    do.click(twist, (65, 32))
+    twist.keyboard.up("Shift")
+    expect(twist.get_by_role("heading", name="2 beams")).to_be_visible()
+    twist.keyboard.press("-")
+    for number in (9, 11):
+        expect(do.beam(twist, number)).to_have_accessible_name(re.compile("75 % top"))
+    do.button(twist, re.compile("^Undo: Change actuator")).click()
+    expect(do.beam(twist, 9)).to_have_accessible_name(re.compile("100 % top"))
+
+
+def test_a_grid_is_mirrored_turned_and_scaled(twist):
+    def joints():
+        return do.document(twist)["grid"]["joints"]
+
+    before = joints()
+    twist.keyboard.press("Escape")
+    do.use(twist, "Mirror left and right")
+    assert joints() == [[-x, y] for x, y in before]
+    do.plan(twist).get_by_role("option").first.focus()
+    twist.keyboard.press("m")
+    assert joints() == before
+    twist.keyboard.press("r")
+    assert joints() == [[-y, x] for x, y in before]
+    twist.keyboard.press("Control+z")
+    factor = twist.get_by_label("Factor")
+    factor.fill("80")
+    factor.press("Enter")
+    do.button(twist, "Scale").click()
+    assert joints() == [[0.8 * x, 0.8 * y] for x, y in before]
+
+
+def test_numbers_stand_at_the_pointer(twist):
+    twist.mouse.move(*do.at(twist, (32, 65)))
+    for words in ("Beam 11 · 100 % top", "65.0 mm", "Net 57.8 mm"):
+        expect(twist.locator(".plan-readout").get_by_text(words, exact=False).first).to_be_visible()
+
+
+def test_the_pointer_snaps_to_beams_and_touches_become_joints(twist):
+    do.use(twist, "Draw")
+    do.click(twist, (-64, 66))  # near a joint
+    twist.mouse.move(*do.at(twist, (33, -63.5)), steps=5)
+    readout = twist.locator(".plan-readout")
+    expect(readout.get_by_text("on beam")).to_be_visible()
+    twist.mouse.click(*do.at(twist, (33, -63.5)))
+    twist.keyboard.press("Enter")
+    expect(do.joints(twist)).to_have_count(12)  # on a side, and where two beams are crossed
+    do.placed(do.joint(twist, 9), 32.5, -65)
+    do.simulated(twist)
+
+
+def test_many_short_actuators_are_mended_at_once(twist):
+    twist.keyboard.press("Control+a")
+    ratio = twist.get_by_label("Ratio in percent")
+    ratio.fill("5")
+    ratio.press("Enter")
+    wrong = twist.get_by_role("region", name="Errors")
+    expect(do.button(wrong, "Set beam 0 to 25 %")).to_be_visible()
+    expect(do.button(wrong, "Set beam 1 to 25 %")).to_be_visible()
+    do.button(wrong, "Mend all 12 actuators").click()
+    do.simulated(twist)
+    assert do.document(twist)["grid"]["actuators"] == [0.25] * 12
+    do.button(twist, "Undo: Mend all 12 actuators").click()
+    expect(wrong).to_be_visible()
+
+
+def test_the_shape_is_coloured_by_what_it_is_like(twist):
+    choice = do.shape(twist).get_by_label("Colour")
+    for name, unit in (
+        ("Stress (von Mises)", "MPa"),
+        ("Stretch of beams' edges", "%"),
+        ("Height", "mm"),
+    ):
+        choice.select_option(name)
+        expect(
+            do.shape(twist).locator(".shape-legend").get_by_text(unit, exact=True)
+        ).to_be_visible()

@@ -232,6 +232,12 @@ BROKEN = {
     ),
     "dangling beams": (changed(SQUARE, [[-60, 0], [-120, 5]], [[0, 4], [4, 5]]), "dangling-beam"),
     "a joint without beams": (changed(SQUARE, [[30, 30]]), "unused-joint"),
+    "joints counted from 1": (
+        Grid([*SQUARE.joints, [90, 40]], SQUARE.beams + 1, [0, 1, 0, 0.5], 1),
+        "counted-from-one",
+    ),
+    "metres": (Grid(SQUARE.joints / 1000, SQUARE.beams, [0, 1, 0, 0], 2), "size"),
+    "inches": (Grid(SQUARE.joints / 25.4, SQUARE.beams, [0, 1, 0, 0], 2), "size"),
 }
 
 
@@ -280,7 +286,7 @@ def test_repairs_pass_the_check(page):
 
 def test_repairs_change_no_more_than_they_must(page):
     names = ["a short actuator", "no room for an actuator", "two diagonals", "a larger second part"]
-    names.append("dangling beams")
+    names += ["dangling beams", "joints counted from 1", "metres"]
     grids, codes = repaired(page, [BROKEN[name][0] for name in names])
     assert grids[0].actuators.tolist() == [0.25, -0.25, 1, 0]
     assert grids[1].actuators.tolist() == [0, 0, 0, 1]
@@ -288,6 +294,11 @@ def test_repairs_change_no_more_than_they_must(page):
     assert len(grids[2].beams) == 8
     assert len(grids[3].beams) == len(ROW.beams)
     assert grids[4].joints.tolist() == SQUARE.joints.tolist()
+    assert grids[5].beams.tolist() == SQUARE.beams.tolist()
+    assert grids[5].fixed == 0
+    assert codes[5][0] == "counted-from-one"
+    sizes = np.ptp(grids[6].joints, axis=0)
+    np.testing.assert_allclose(sizes, 60, rtol=0.01)
     assert codes[4] == ["dangling-beam"]  # both beams at once, so that none is left alone
 
 

@@ -63,6 +63,9 @@ def test_library_materials_printers(client):
     printers = {one["name"]: one for one in client.get("/api/printers").json()["printers"]}
     assert printers["bambu-x1"]["nozzle"] == 0.4
     assert printers["ender-3"]["bed"]["width"] == 220
+    facts = {"firmware", "sources", "tried", "reach"}
+    assert all(facts <= one.keys() for one in printers.values())
+    assert all({"shape", "excluded"} <= one["bed"].keys() for one in printers.values())
 
 
 def test_validate_says_what_the_command_line_says(client, run, tmp_path):

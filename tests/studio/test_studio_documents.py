@@ -140,6 +140,10 @@ def test_a_drawing_may_be_half_done(client, document):
         (["name"], "x" * 201, "name"),
         (["name"], "\ud800", "name"),
         (["more"], 1, "more"),
+        (["printer"], 5, "printer"),
+        (["printer"], "x" * 81, "printer"),
+        (["printer"], {"path": "/etc/passwd"}, "printer.profile"),
+        (["printer"], {"profile": "x" * (2**16 + 1)}, "printer.profile"),
     ],
 )
 def test_what_is_no_document_is_refused(client, folder, path, value, where):

@@ -14,6 +14,7 @@ from rich.table import Table
 from simulearn.cli.base import Json, app, err, folder_of, out
 from simulearn.cli.progress import bar, counting
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.files import replacing
 from simulearn.material import Material, read_material
 
@@ -43,6 +44,7 @@ def train(
     as_json: Json = False,
 ) -> None:
     """Train a model; the same command goes on where it was stopped."""
+    require("training needs", "jax", "equinox", "optax")
     from simulearn.dataset import read_dataset
     from simulearn.learn.config import read_config
     from simulearn.learn.equilibrium.config import EquilibriumConfig

@@ -12,9 +12,8 @@ from rich.markup import escape
 
 from simulearn.cli.base import app, err, out
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.files import data_folder
-
-PACKAGES = ("fastapi", "starlette", "anyio", "uvicorn", "nicegui")
 
 
 @app.command()
@@ -41,13 +40,10 @@ def studio(
     ] = None,
 ) -> None:
     """Draw grids in the browser and watch them morph."""
-    try:
-        from simulearn.studio.serve import PORT, address_of, is_local, listen, serve
-        from simulearn.studio.settings import Settings
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in PACKAGES:
-            raise
-        raise InputError("the studio needs packages: pip install 'simulearn[studio]'") from error
+    require("the studio needs", "fastapi", "uvicorn", "nicegui")
+    from simulearn.studio.serve import PORT, address_of, is_local, listen, serve
+    from simulearn.studio.settings import Settings
+
     listener = listen(host, port)
     with listener:
         settings = Settings(hosts=(host, *(allow or ())), data=_folder(data))

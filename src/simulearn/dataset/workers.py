@@ -21,6 +21,7 @@ from typing import Any
 from simulearn import __version__
 from simulearn.dataset.trial import SOLVER_VERSION, TrialJob, TrialOutcome, run
 from simulearn.errors import ComputationError, InputError
+from simulearn.extras import require
 
 LONGEST = 900.0  # s; a trial takes seconds, and a minute where kernels are compiled
 ANSWERING = 10.0  # s that a scheduler may take to answer at first
@@ -124,10 +125,9 @@ def cluster_workers(address: str, waiting: float = WAITING) -> Iterator[Workers]
         InputError: nobody answers there, or Dask is not installed.
         ComputationError: it has no workers, or they have not this version of SimuLearn.
     """
-    try:
-        from distributed import Client
-    except ImportError as error:
-        raise InputError("a cluster needs Dask: pip install 'simulearn[cluster]'") from error
+    require("a Dask cluster needs", "distributed")
+    from distributed import Client
+
     try:
         _knock(address)
         client = Client(address, timeout=ANSWERING, set_as_default=False)

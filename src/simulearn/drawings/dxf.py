@@ -1,6 +1,5 @@
 """DXF files, text or binary, of all versions: their lines, curves, layers and unit."""
 
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ from simulearn.drawings.drawing import Drawing, Line, Unit
 from simulearn.drawings.dxf_file import document
 from simulearn.drawings.dxf_walk import Walk
 from simulearn.errors import InputError
+from simulearn.extras import require
 
 # By the number in $INSUNITS; 0 is "no unit".
 _UNITS = (
@@ -34,10 +34,7 @@ def read_dxf(data: bytes) -> Drawing:
     Raises:
         InputError: it is no DXF file, too damaged or too large.
     """
-    if find_spec("ezdxf") is None:
-        raise InputError(
-            "DXF files need a package: pip install 'simulearn[rhino]'", "package-missing"
-        )
+    require("DXF files need", "ezdxf")
     found, messages = document(data)
     walk = Walk(found)
     try:

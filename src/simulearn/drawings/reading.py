@@ -3,7 +3,6 @@
 import gzip
 import re
 import zlib
-from collections.abc import Callable
 from io import BytesIO
 
 from simulearn.drawings.drawing import Drawing
@@ -13,6 +12,7 @@ from simulearn.drawings.pages import page_contents
 from simulearn.drawings.tables import read_csv
 from simulearn.drawings.text import decoded
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.files import parse_json
 from simulearn.grid import Grid, grid_from_dict
 
@@ -37,8 +37,6 @@ OTHERS = (
     (rb"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0", "a SketchUp file; save it as DXF"),
     (rb"\xd0\xcf\x11\xe0", "an old Office or CAD file; save lines as DXF or SVG"),
 )
-# Readers' packages, which `pip install 'simulearn[rhino]'` brings.
-PACKAGES = {"ezdxf": "DXF", "rhino3dm": "Rhino (.3dm)", "svgelements": "SVG", "tinycss2": "SVG"}
 DXF = re.compile(r"\s*(?:999[ \t]*\n.*\n\s*)*0[ \t]*\n[ \t]*SECTION\b", re.IGNORECASE)
 SVG = re.compile(r"<(?:[A-Za-z_][\w.-]*:)?svg[\s>/]")
 OBJ = re.compile(r"^[ \t]*v[ \t]+[-+.\d]", re.MULTILINE)
@@ -94,7 +92,7 @@ def read_drawing(data: bytes, name: str) -> Drawing:
     if data.startswith(b"AutoCAD Binary DXF"):
         return _dxf(data)
     if data.startswith(b"3D Geometry File Format"):
-        return _with_package(lambda: _read_3dm(data))
+        return _3dm(data)
     for start, what in OTHERS:
         if re.match(start, data, re.DOTALL):
             raise InputError(f"is {what}", "format")
@@ -111,7 +109,7 @@ def _of_text(data: bytes, name: str) -> Drawing:
         return read_json_lines(parse_json(text))
     if begin.startswith("<"):
         if SVG.search(text):
-            return _with_package(lambda: _read_svg(data))
+            return _svg(data)
         root = re.search(r"<([A-Za-z_][\w:.-]*)", begin)
         kind = f"<{root[1][:40]}>" if root else "no element"
         raise InputError(f"is XML with {kind} but no <svg>; {READ} are read", "format")
@@ -141,35 +139,20 @@ def _unzipped(data: bytes) -> bytes:
     return contents
 
 
-def _with_package(read: Callable[[], Drawing]) -> Drawing:
-    """Return what a reader returns, or say which package it needs."""
-    try:
-        return read()
-    except ModuleNotFoundError as error:
-        kind = PACKAGES.get((error.name or "").split(".")[0])
-        if kind is None:
-            raise
-        text = f"{kind} files need a package: pip install 'simulearn[rhino]'"
-        raise InputError(text, "package-missing") from error
-
-
 def _dxf(data: bytes) -> Drawing:
-    return _with_package(lambda: _read_dxf(data))
-
-
-def _read_dxf(data: bytes) -> Drawing:
     from simulearn.drawings.dxf import read_dxf
 
     return read_dxf(data)
 
 
-def _read_3dm(data: bytes) -> Drawing:
+def _3dm(data: bytes) -> Drawing:
     from simulearn.drawings.rhino import read_3dm
 
     return read_3dm(data)
 
 
-def _read_svg(data: bytes) -> Drawing:
+def _svg(data: bytes) -> Drawing:
+    require("SVG files need", "svgelements", "tinycss2")
     from simulearn.drawings.svg import read_svg
 
     return read_svg(data)

@@ -5,11 +5,11 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from simulearn.errors import InputError
+from simulearn.extras import require
 
 TIMEOUT = 30.0  # s; a file as large as is taken is read in far less
 
@@ -30,10 +30,7 @@ def contents(data: bytes) -> dict[str, Any]:
     Raises:
         InputError: it is no .3dm file, damaged or too large, or rhino3dm is missing.
     """
-    if find_spec("rhino3dm") is None:
-        raise InputError(
-            "Rhino files need a package: pip install 'simulearn[rhino]'", "package-missing"
-        )
+    require("Rhino files need", "rhino3dm")
     if not data.startswith(_BEGINNING):
         raise InputError("this is no Rhino file: it does not begin as a .3dm file", "3dm-broken")
     with tempfile.TemporaryDirectory() as folder:

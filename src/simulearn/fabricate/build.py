@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.fabricate.order import nearest_first
+from simulearn.fabricate.order import printing_order
 from simulearn.fabricate.printer import Bed
 from simulearn.fabricate.raster import Strokes, fill
 from simulearn.fabricate.regions import Plan, Region
@@ -68,7 +68,7 @@ class _Shells:
     def beads(self, here: Array, first: bool) -> list[Bead]:
         """Return the beads of the next layer, in order from where the nozzle is."""
         beads = []
-        for k, seam in nearest_first(self.places, self.places, here, self.used):
+        for k, seam in printing_order(self.places, self.places, here, self.used):
             g, points = self.rings[k]
             points = np.roll(points, -self.seams[k][seam], axis=0)
             points = np.concatenate([points, points[:1]])
@@ -104,14 +104,11 @@ class _Fills:
         """Yield what fills the next layer, in order from where the nozzle is."""
         pieces = [*self.joints[top, odd], *self.beams[top]]
         tips = [piece.strokes.tips() for piece in pieces]
-        order = nearest_first(
+        order = printing_order(
             [a for a, _ in tips], [b for _, b in tips], here, [piece.used for piece in pieces]
         )
         for k, variant in order:
-            piece = pieces[k]
-            points, widths = piece.strokes.path(variant)
-            role, part = piece.region.role, piece.region.part
-            yield _bead(self.settings, role, part, piece.grid, points, widths, first)
+            yield pieces[k].bead(variant, self.settings, first)
 
     def _fill(self, g: int, regions: list[Region]) -> list["_Piece"]:
         s = self.settings
@@ -128,6 +125,16 @@ class _Piece:
     def __init__(self, grid: int, region: Region, strokes: Strokes) -> None:
         self.grid, self.region, self.strokes = grid, region, strokes
         self.used = np.zeros(4, dtype=np.int64)
+        self._beads: dict[tuple[int, bool], Bead] = {}
+
+    def bead(self, variant: int, settings: Settings, first: bool) -> Bead:
+        """Return the bead of a variant, the same object whenever it is printed again."""
+        if (variant, first) not in self._beads:
+            points, widths = self.strokes.path(variant)
+            role, part = self.region.role, self.region.part
+            bead = _bead(settings, role, part, self.grid, points, widths, first)
+            self._beads[variant, first] = bead
+        return self._beads[variant, first]
 
 
 def _bead(

@@ -81,13 +81,15 @@ def gcode(
     firmware = printer.firmware
     body = list(_body(path, moves, durations, settings, printer, names))
     ended = end_code(printer, settings, frame)
-    end = [*after(printer), *ended.lines, *off(ended.state)]
+    stop, end = list(after(printer)), [*ended.lines, *off(ended.state)]
+    if firmware == "reprap":
+        # From the end upwards, Duet Web Control takes what stands before a G90 for relative and
+        # finds no height; the moves of the print have left the machine in absolute coordinates.
+        stop, end = [line for line in stop if line != "G90"], _ended(end)
     started = start_code(printer, settings, frame)
     start = started.lines
     if firmware == "bambu" and not settings.bed:
         start = [line for line in start if not BED_OFF.match(line)]
-    if firmware == "reprap":
-        end = _ended(end)
     lines = [
         *header(path, bounds, estimated, settings, printer, material, names, notes, warnings),
         *thumbnails(path, firmware),
@@ -97,6 +99,7 @@ def gcode(
         *before(settings, printer, started.state),
         *markers.all_layers(path, firmware),
         *body,
+        *stop,
         *end,
         *footer(path, printer),
     ]

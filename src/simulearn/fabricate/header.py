@@ -149,6 +149,8 @@ def _keys(
     yield f"; filament_density = {settings.density * 1000:g}"
     yield f"; nozzle_diameter = {settings.nozzle:g}"
     yield f"; layer_height = {settings.layer:g}"
+    yield f"; first_layer_height = {path.layers[0].height:g}"
+    yield f"; brim_width = {settings.brim:.0f}"
     yield f"; max_layer_z = {path.layers[-1].z:.2f}"
     yield f"; extrusion_width = {settings.line:.4g}"
     yield f"; fill_density = {100 * settings.infill:g}%"

@@ -14,7 +14,7 @@ import shapely
 from numpy.typing import NDArray
 
 from simulearn.fabricate.printer import Bed
-from simulearn.fabricate.regions import QUARTER, Plan
+from simulearn.fabricate.regions import Plan
 from simulearn.fabricate.settings import Settings
 from simulearn.fabricate.zones import room
 from simulearn.grid import Message
@@ -22,6 +22,7 @@ from simulearn.grid import Message
 Array = NDArray[np.float64]
 SKIRT_LEAST = 3.0  # mm; a skirt nearer to the grid is left out
 APART = 1.0  # mm; also one nearer to the brim
+QUARTER = 12  # segments of a quarter circle where a row turns about a corner
 GAP = 0.1  # mm between brim and grid, as makers of printers have it
 
 
@@ -89,7 +90,7 @@ def beside(plans: Sequence[Plan], settings: Settings, bed: Bed) -> Beside:
         text = f"the skirt is {away:.1f} mm out instead of {settings.skirt_distance:g}: "
         text += "the bed ends there" if away < wished else "the brim is in between"
         messages.append(Message("skirt", "bed", text))
-    ring = shapely.get_coordinates(shapely.buffer(hull, away + line / 2, quad_segs=8))
+    ring = shapely.get_coordinates(shapely.buffer(hull, away + line / 2, quad_segs=QUARTER))
     return Beside([Ring(-1, ring)], brim, messages)
 
 

@@ -4,6 +4,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from simulearn.errors import InputError
+from simulearn.extras import missing
 
 FILES = {  # name in the page -> place in the package
     "vue.js": "static/vue.esm-browser.prod.js",
@@ -19,8 +20,7 @@ def libraries() -> dict[str, Path]:
     """
     spec = find_spec("nicegui")  # found without being imported, which would take a second
     if spec is None or spec.origin is None:
-        text = "interactive pages need a package: pip install 'simulearn[studio]'"
-        raise InputError(text, "package-missing")
+        raise missing("interactive pages need", "nicegui")
     folder = Path(spec.origin).parent
     found = {name: folder / place for name, place in FILES.items()}
     for path in found.values():

@@ -15,6 +15,7 @@ from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.fabricate import Job
 from simulearn.files import replacing
 from simulearn.grid import Grid, outline
@@ -188,11 +189,8 @@ class _File:
     """A Rhino file in memory; layers are made as they are named."""
 
     def __init__(self) -> None:
-        try:
-            self.rhino: Any = import_module("rhino3dm")
-        except ImportError as error:
-            text = "Rhino files need a package: pip install 'simulearn[rhino]'"
-            raise InputError(text, "package-missing") from error
+        require("Rhino files need", "rhino3dm")
+        self.rhino: Any = import_module("rhino3dm")
         self.model = self.rhino.File3dm()
         self.model.ApplicationName = "SimuLearn"
         self.model.Settings.ModelUnitSystem = self.rhino.UnitSystem.Millimeters

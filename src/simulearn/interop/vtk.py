@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.files import replacing
 from simulearn.material import Material, load_material
 from simulearn.schedule import SCHEDULE
@@ -83,10 +84,9 @@ def write_pvd(result: Result, path: Path | str) -> None:
 
 
 def _mesh(result: Result, frame: int) -> Any:
-    try:
-        import meshio
-    except ImportError as error:
-        raise InputError("VTK files need a package: pip install 'simulearn[vtk]'") from error
+    require("VTK files need", "meshio")
+    import meshio
+
     material = _material(result)
     known = result.stress is None or material is not None
     if result.solid is not None and result.displacements is not None and known:

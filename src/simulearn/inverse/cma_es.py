@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.inverse.problem import Advance, Problem, Scored
 
 SPREAD = 1.5  # steps, standard deviation to begin with
@@ -23,12 +23,9 @@ def cma_es(problem: Problem, start: Scored) -> Iterator[Advance]:
     Raises:
         InputError: the package `cma` is not installed.
     """
-    try:
-        import cma
-    except ModuleNotFoundError as error:
-        raise InputError(
-            "the method cma needs a package: pip install 'simulearn[search]'"
-        ) from error
+    require("the method cma needs", "cma")
+    import cma
+
     space, p = problem.space, len(start.x)
     scale = np.r_[np.full(p, space.move), np.full(len(start.a), space.ratio)]
     low = np.r_[np.full(p, -FARTHEST), np.full(len(start.a), -1.0)] / scale

@@ -15,6 +15,7 @@ import numpy as np
 
 from simulearn.display import Displayed
 from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message
+from simulearn.extras import require
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.goals import Goals
@@ -92,6 +93,8 @@ def method(name: str) -> Method:
         raise InputError(
             f'method "{name}" is not known; known are {known}', "method-unknown", "method"
         )
+    if name == "gradient":
+        require("the method gradient needs", "jax")
     module, function = METHODS[name]
     search: Method = getattr(import_module(module), function)
     return search

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from simulearn.errors import Cancel, ComputationError, InputError, stop_if
+from simulearn.extras import require
 from simulearn.files import cores
 from simulearn.grid import Grid, make
 from simulearn.simulate.checked import Checked, check_all
@@ -190,6 +191,7 @@ def _fea() -> StreamingSimulator:
 
 
 def _calculix() -> StreamingSimulator:
+    require("the engine calculix needs", "jax")
     from simulearn.fea.calculix import simulate_grid
 
     return Engine("calculix", _cancelled_by_frame(simulate_grid))

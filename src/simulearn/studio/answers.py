@@ -11,6 +11,8 @@ from simulearn.studio.problems import MessageBody
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Corners = Annotated[list[Point], Field(min_length=8, max_length=8)]
 Section = Annotated[list[Point], Field(min_length=4, max_length=4)]
+Interval = Annotated[list[float], Field(min_length=2, max_length=2)]
+Box = Annotated[list[Interval], Field(min_length=2, max_length=2)]
 Sections = Annotated[list[Section], Field(min_length=3, max_length=3)]
 
 
@@ -85,13 +87,25 @@ class Materials(_Answer):
     materials: list[MaterialFacts]
 
 
-class BedSize(_Answer):
-    """Where the nozzle may go, mm."""
+class BedFacts(_Answer):
+    """What can be printed on, mm."""
 
     width: float
     depth: float
     height: float
     origin: Literal["corner", "centre"]
+    shape: Annotated[
+        Literal["rectangle", "round"] | None, Field(description="null where it is not known")
+    ]
+    excluded: Annotated[list[Box], Field(description="rectangles in which nothing is printed")]
+
+
+class ReachFacts(_Answer):
+    """Where start and end code may move, from and to, mm; null: as far as the bed."""
+
+    x: Interval | None
+    y: Interval | None
+    z: Interval | None
 
 
 class PrinterFacts(_Answer):
@@ -99,7 +113,12 @@ class PrinterFacts(_Answer):
 
     name: str
     title: str
-    bed: BedSize
+    firmware: str
+    sources: Annotated[list[str], Field(description="what the profile follows")]
+    tried: Annotated[str, Field(description="who has printed with the profile; empty: nobody")]
+    formats: Annotated[list[str], Field(description="files that it takes, the best first")]
+    bed: BedFacts
+    reach: ReachFacts
     nozzle: float
     filament: float
     nozzle_most: float

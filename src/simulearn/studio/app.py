@@ -21,7 +21,7 @@ from simulearn.studio.openapi import describe
 from simulearn.studio.page import serve_page
 from simulearn.studio.problems import LastResort, answer_errors
 from simulearn.studio.rhino import routes as rhino
-from simulearn.studio.routes import about, designs, documents, files, jobs, prints
+from simulearn.studio.routes import about, designs, documents, files, jobs, printers, prints
 from simulearn.studio.safety import BodyLimit, OwnOriginOnly, SecurityHeaders
 from simulearn.studio.settings import Settings
 from simulearn.studio.simulations import Simulations
@@ -31,6 +31,7 @@ ROUTERS = (
     about.router,
     designs.router,
     jobs.router,
+    printers.router,
     prints.router,
     files.router,
     documents.router,

@@ -7,9 +7,10 @@ be is well-formed: finite numbers within bounds, beams between joints that exist
 import json
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
 
 from simulearn.errors import InputError
+from simulearn.fabricate.printer import MOST_TEXT
 from simulearn.grid.arrays import shown
 from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
 from simulearn.material.material import is_name
@@ -18,6 +19,7 @@ from simulearn.studio.problems import place_of
 SCHEMA = "simulearn.document/1"
 MOST_GOALS = 1000
 SECTIONS = ("start", "middle", "end")
+NAMED, OWN = "a name", "a profile"  # kinds of a printer, in places of pydantic
 
 Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Point = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
@@ -50,14 +52,26 @@ class DocumentGoal(_Strict):
     weight: Annotated[float, Field(ge=0, le=1e6)] = 1.0
 
 
+class OwnPrinter(_Strict):
+    """A printer by the text of its profile, so that a document can be printed anywhere."""
+
+    profile: Annotated[str, Field(max_length=MOST_TEXT)]
+
+
+DocumentPrinter = Annotated[
+    Annotated[str, Field(max_length=80), Tag(NAMED)] | Annotated[OwnPrinter, Tag(OWN)],
+    Discriminator(lambda value: OWN if isinstance(value, dict) else NAMED),
+]
+
+
 class DocumentFile(_Strict):
-    """A design, its goals, and what it is to be printed on."""
+    """A design, its goals, and what it is to be printed on: a name, or a profile."""
 
     schema_: Annotated[Literal["simulearn.document/1"], Field(alias="schema")]
     name: Annotated[str, Field(max_length=200)] = ""
     grid: Drawing
     goals: Annotated[list[DocumentGoal], Field(max_length=MOST_GOALS)] = []
-    printer: Annotated[str, Field(max_length=80)] = ""
+    printer: DocumentPrinter = ""
 
 
 def check_document(data: Any) -> None:
@@ -120,7 +134,7 @@ def is_vertex(vertex: list[Any], joints: int, beams: int) -> bool:
 def _wrong(error: ValidationError) -> InputError:
     """Return the first of pydantic's errors in our words."""
     first = error.errors(include_url=False)[0]
-    where = place_of(first["loc"])
+    where = place_of(part for part in first["loc"] if part not in (NAMED, OWN))
     if first["type"] == "missing":
         text = f"{where} is missing"
     elif first["type"] == "extra_forbidden":

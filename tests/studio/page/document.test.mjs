@@ -26,6 +26,8 @@ test("what may be left out has its usual value, and numbered sections get their 
   assert.deepEqual(document.goals[0], { vertex: ["beam", 1, "end", "centre"], target: [1, 2, 3], weight: 1 });
   assert.equal(document.name, "");
   assert.equal(document.printer, emptyDocument().printer);
+  const printer = { profile: 'base = "voron"\n' };
+  assert.deepEqual(readDocument({ ...document, printer }).printer, printer);
 });
 
 const deep = JSON.parse("[".repeat(50_000) + "]".repeat(50_000));
@@ -37,6 +39,8 @@ const WRONG = [
   [(one) => JSON.parse(`{"__proto__": 1, ${JSON.stringify(one).slice(1)}`), /has the key "__proto__"/],
   [(one) => ({ ...one, name: 5 }), /name is 5/],
   [(one) => ({ ...one, printer: "" }), /printer is ""/],
+  [(one) => ({ ...one, printer: { path: "x.toml" } }), /printer has the key "path"/],
+  [(one) => ({ ...one, printer: { profile: "x".repeat(70_000) } }), /printer.profile is "x/],
   [(one) => ({ ...one, grid: undefined }), /the grid is missing/],
   [(one) => ({ ...one, goals: {} }), /goals are not a list/],
   [(one) => ({ ...one, name: deep }), /name is nested too deeply/],

@@ -6,11 +6,13 @@ import test from "node:test";
 
 const PAGE = new URL("../../../src/simulearn/studio/page/", import.meta.url);
 const SERVER_SAYS = /^design_/; // the server has English descriptions of its library
-const PARTS = ["common", "panels", "plan", "repairs", "shape"];
+const PARTS = ["common", "drawing", "panels", "plan", "print", "repairs", "shape"];
 
 async function strings(part) {
   return (await import(new URL(`text/${part}.js`, PAGE)))[part];
 }
+
+const NAMED = new RegExp(`"(${PARTS.join("|")})\\.(\\w+)"`, "g");
 
 const values = (text) => [...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name).sort().join();
 
@@ -28,7 +30,7 @@ test("every string that the page names is there", async () => {
   for (const name of await readdir(PAGE, { recursive: true })) {
     if (!name.endsWith(".js") || name.startsWith("text/")) continue;
     const source = await readFile(new URL(name, PAGE), "utf8");
-    for (const [, part, key] of source.matchAll(/"(common|panels|plan|repairs|shape)\.(\w+)"/g)) {
+    for (const [, part, key] of source.matchAll(NAMED)) {
       const { en } = await strings(part);
       if (!(key in en)) missing.push(`${name}: ${part}.${key}`);
     }

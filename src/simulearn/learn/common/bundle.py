@@ -30,7 +30,7 @@ from simulearn import __version__
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import TrainingRange
-from simulearn.learn.common.model import Model, builder
+from simulearn.learn.common.model import Model, builder, check_kind
 from simulearn.material import Identity, Material, load_material
 from simulearn.material.material import is_name
 
@@ -181,15 +181,17 @@ class Bundle:
         """The model.
 
         Raises:
-            InputError: the weights are missing, damaged, or do not fit the card.
+            InputError: the weights are missing, damaged, or do not fit the card; or a package is
+                missing.
         """
         try:
             arrays = load(self._content())
         except SafetensorError as error:
             file = self.path / "weights.safetensors"
             raise InputError(f"{file}: is not a safetensors file: {error}", *WEIGHTS) from error
+        build = builder(self.card.kind)
         try:
-            return builder(self.card.kind)(self.card.architecture, arrays, self.card.material)
+            return build(self.card.architecture, arrays, self.card.material)
         except InputError as error:
             raise InputError(f"{self.path}: {error}") from error
 
@@ -226,7 +228,7 @@ def bundle_of(name: Path | str) -> Bundle:
         )
     try:
         card = Card.model_validate(data)
-        builder(card.kind)  # an unknown kind is refused now
+        check_kind(card.kind)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"]))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.material import Material, load_material
 from simulearn.schedule import Snap
 
@@ -138,14 +139,21 @@ KINDS = {  # kind -> module, class
 }
 
 
+def check_kind(kind: str) -> None:
+    """Raise InputError where there is no such kind of model."""
+    if kind not in KINDS:
+        raise InputError(f'a model of kind "{kind}" is not known; known are {", ".join(KINDS)}')
+
+
 def builder(kind: str) -> Builder:
     """Return `from_arrays` of a kind: it builds a model of its config, arrays and material.
 
     Raises:
-        InputError: there is no such kind.
+        InputError: there is no such kind, or a package that it needs is missing.
     """
-    if kind not in KINDS:
-        raise InputError(f'a model of kind "{kind}" is not known; known are {", ".join(KINDS)}')
+    check_kind(kind)
+    if kind == "paper":
+        require("models of the kind paper need", "jax", "equinox")
     module, name = KINDS[kind]
     build: Builder = getattr(import_module(module), name).from_arrays
     return build

@@ -15,6 +15,7 @@ import numpy as np
 
 from simulearn.dataset import Dataset
 from simulearn.errors import InputError
+from simulearn.extras import require
 from simulearn.files import read_text, replacing
 from simulearn.learn.common.first_frame import designs_of
 from simulearn.learn.common.metrics import errors, together
@@ -47,10 +48,9 @@ def search(
     Raises:
         InputError: Optuna is not installed, or the folder holds another search.
     """
-    try:
-        import optuna
-    except ImportError as error:
-        raise InputError("--search needs Optuna: pip install 'simulearn[search]'") from error
+    require("--search needs", "optuna")
+    import optuna
+
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     identity = fingerprint(config, data)
     file = folder / "search.json"

@@ -62,6 +62,11 @@ export const view = reactive({
 /** Whether the shown answer belongs to an earlier document. */
 export const stale = computed(() => state.answer?.document.grid !== state.document.grid);
 
+/** Return whether the server compiles its model, as it does the first time on a machine. */
+export function preparing() {
+  return state.server !== null && !state.server.ready;
+}
+
 /** Replace the document by change(document).
  *
  * label: what was done, for undo. merge: edits in a row with the same key are one step of undo, as

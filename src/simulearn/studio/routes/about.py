@@ -1,4 +1,4 @@
-"""What the server is and has: its version, the library, material systems and printers."""
+"""What the server is and has: its version, the library and material systems."""
 
 from functools import cache
 from typing import Any
@@ -6,17 +6,15 @@ from typing import Any
 from fastapi import APIRouter, Request
 
 from simulearn import __version__
-from simulearn.fabricate import load_printer, printers
 from simulearn.grid import grid_to_dict, library, make
 from simulearn.learn.common.bundle import bundle_of
 from simulearn.material import load_material, names
 from simulearn.outputs import WRITERS
-from simulearn.studio.answers import Library, Materials, Printers, Version
+from simulearn.studio.answers import Library, Materials, Version
 from simulearn.studio.bodies import JsonRoute
 from simulearn.studio.simulations import AT_ONCE
 
 API = 1  # rises when a change breaks other programs
-MATERIAL = "pla-hot-water"  # whose nozzle a printer has that does not name its own
 
 router = APIRouter(route_class=JsonRoute, tags=["about"])
 
@@ -50,12 +48,6 @@ async def materials() -> Any:
     return _materials()
 
 
-@router.get("/api/printers", response_model=Printers)
-async def printers_() -> Any:
-    """Return the printers that come with SimuLearn."""
-    return _printers()
-
-
 @cache
 def _model() -> dict[str, str]:
     return bundle_of("default").identity.model_dump()
@@ -74,22 +66,3 @@ def _library() -> dict[str, Any]:
 def _materials() -> dict[str, Any]:
     facts = {"name", "title", "section", "limits"}
     return {"materials": [load_material(name).model_dump(include=facts) for name in names()]}
-
-
-@cache
-def _printers() -> dict[str, Any]:
-    nozzle = load_material(MATERIAL).print.nozzle
-    return {
-        "printers": [
-            {
-                "name": printer.name,
-                "title": printer.title,
-                "bed": printer.bed.model_dump(),
-                "nozzle": printer.print.get("nozzle", nozzle),
-                "filament": printer.extruder.filament,
-                "nozzle_most": printer.temperature.nozzle_most,
-                "bed_most": printer.temperature.bed_most,
-            }
-            for printer in map(load_printer, printers())
-        ]
-    }

@@ -15,7 +15,7 @@ from simulearn.grid import Grid, grid_from_dict
 from simulearn.grid.structure import FARTHEST
 from simulearn.simulate import Result, one
 from simulearn.studio.bodies import GridBody, JsonRoute, json_response
-from simulearn.studio.documentfile import DocumentGoal, Drawing
+from simulearn.studio.documentfile import DocumentGoal, DocumentPrinter, Drawing
 from simulearn.studio.downloads import attachment, safe_stem
 from simulearn.studio.exports import check_format, exported
 from simulearn.studio.opening import opened
@@ -114,7 +114,7 @@ class OpenedFile(BaseModel):
     name: str
     grid: Drawing
     goals: list[DocumentGoal]
-    printer: str | None
+    printer: DocumentPrinter | None
     messages: list[MessageBody]
     drawing: Annotated[DrawingFacts | None, Field(description="of a drawing only")]
 

@@ -8,7 +8,6 @@ from simulearn.studio.hops.design import DRAWN, design_of
 from simulearn.studio.hops.parameters import NUMBER, TEXT, Component, Input, Output
 from simulearn.studio.hops.solving import Context, Outputs
 from simulearn.studio.hops.values import Exact, Inputs
-from simulearn.studio.routes.prints import ENDING
 
 PRINTER = Input(
     "Printer",
@@ -36,7 +35,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     return Outputs(
         {
             "Text": [Exact(line) for line in job.gcode.splitlines()],
-            "File": [f"{stem}{ENDING}"],
+            "File": [f"{stem}.gcode"],
             "Time": [job.estimate.seconds],
             "Heating": [job.estimate.heating_seconds],
             "Filament": [job.estimate.filament_mm],

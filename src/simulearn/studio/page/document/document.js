@@ -9,6 +9,7 @@ const MOST_JOINTS = 20_000; // as the server
 const MOST_BEAMS = 2 * MOST_JOINTS;
 const MOST_GOALS = 1000;
 const MOST_NAME = 200; // characters
+export const MOST_PROFILE = 65_536; // characters, as the server
 const SECTIONS = ["start", "middle", "end"];
 
 /** Return a document without joints. */
@@ -21,7 +22,7 @@ export function emptyDocument() {
       joints: [], beams: [], actuators: [], fixed: 0, material: "pla-hot-water",
     },
     goals: [], // [{ vertex: ["joint", k, "centre"], target: [x, y, z], weight: 1 }]
-    printer: "ender-3",
+    printer: "ender-3", // a name, or { profile: the text of one }
   };
 }
 
@@ -46,6 +47,11 @@ export function sameGrid(a, b) {
 
 function samePairs(a, b) {
   return a.length === b.length && a.every(([x, y], k) => x === b[k][0] && y === b[k][1]);
+}
+
+/** Return whether two printers have one name or one profile. */
+export function samePrinter(a, b) {
+  return a === b || (a.profile !== undefined && a.profile === b.profile);
 }
 
 /** Return the document with another grid; goals whose vertex it does not have are dropped. */
@@ -86,10 +92,19 @@ export function readDocument(data) {
   const { name = "", goals = [], printer = emptyDocument().printer } = given;
   const titled = typeof name === "string" && name.length <= MOST_NAME;
   check(titled, `name is ${shown(name)}; it is a text of at most ${MOST_NAME} characters`);
-  check(isName(printer), `printer is ${shown(printer)}; it is a printer's name`);
   const grid = readGrid(given.grid);
   check(Array.isArray(goals) && goals.length <= MOST_GOALS, `goals are not a list of at most ${MOST_GOALS}`);
-  return { schema: SCHEMA, name, grid, goals: goals.map((goal, k) => readGoal(goal, k, grid)), printer };
+  const aims = goals.map((goal, k) => readGoal(goal, k, grid));
+  return { schema: SCHEMA, name, grid, goals: aims, printer: readPrinter(printer) };
+}
+
+function readPrinter(data) {
+  if (isName(data)) return data;
+  check(typeof data !== "string", `printer is ${shown(data)}; it is a printer's name`);
+  const { profile } = object(data, "printer", ["profile"]);
+  const short = typeof profile === "string" && profile.length <= MOST_PROFILE;
+  check(short, `printer.profile is ${shown(profile)}; it is a text of at most ${MOST_PROFILE} characters`);
+  return { profile };
 }
 
 /** Return the grid that data describes, or throw an Error that says what is wrong. */

@@ -2,7 +2,8 @@
 
 import { beamLength, beamsAt } from "./measure.js";
 import { distance, nearestOnSegment } from "./geometry.js";
-import { mergeJoints, removeParts, setActuators, setFixed } from "./edit.js";
+import { mergeJoints, removeParts, scale, setActuators, setFixed } from "./edit.js";
+import { withGrid } from "./document.js";
 import { TOLERANCE, settle, splitBeam } from "./drawing.js";
 import { nearestOf, piecesOf, rebuild } from "./numbering.js";
 import { lasting, partsOf } from "./structure.js";
@@ -23,6 +24,8 @@ const REPAIRS = {
   disconnected: joinOrKeepLargest,
   "dangling-beam": joinOrRemove,
   "unused-joint": removeJoint,
+  "counted-from-one": countFromZero,
+  size: rescale,
 };
 
 /** Return a repair {label, values, apply(document)} of a message {code, where, message}, or null.
@@ -36,6 +39,18 @@ export function repair(message, document, netLengths = {}, limits = {}) {
   const found = make?.({ message, document, netLengths, limits, number, parts }) ?? null;
   // Only what changes the document is offered.
   return found && found.apply(document) !== document ? { values: {}, ...found } : null;
+}
+
+/** Return a repair of all actuators that are too short, or null where fewer than two are. */
+export function repairActuators(messages, document, netLengths = {}, limits = {}) {
+  const short = messages.filter(({ code }) => code === "actuator-short");
+  const found = short.map((message) => repair(message, document, netLengths, limits)).filter(Boolean);
+  if (found.length < 2) return null;
+  return {
+    label: "repairs.setActuators",
+    values: { count: found.length },
+    apply: (one) => found.reduce((next, { apply }) => apply(next), one),
+  };
 }
 
 /** Return the number in `where` and the parts {kind, number} that the message names. */
@@ -197,4 +212,21 @@ function touching(joints, { width = WIDTH }) {
 function removeJoint({ number }) {
   const apply = (one) => removeParts(one, { joints: [number] });
   return { label: "repairs.removeJoint", values: { joint: number }, apply };
+}
+
+/** A file of another program may count its joints from 1; the joints stay, and what refers to them moves. */
+function countFromZero() {
+  const apply = (document) => {
+    const { beams, fixed } = document.grid;
+    if (fixed < 1 || beams.flat().includes(0)) return document;
+    const grid = { ...document.grid, beams: beams.map((ends) => ends.map((k) => k - 1)), fixed: fixed - 1 };
+    return withGrid(document, grid);
+  };
+  return { label: "repairs.countFromZero", apply };
+}
+
+/** A grid of another unit: the server says by which factor its beams are of usual lengths. */
+function rescale({ message }) {
+  const factor = Number(/multiply all coordinates by ([\d.e+-]+)/.exec(message.message)?.[1] ?? NaN);
+  return { label: "repairs.scale", values: { factor: String(factor) }, apply: (one) => scale(one, factor) };
 }

@@ -120,7 +120,6 @@ export const Drop = {
 
 export const Notices = {
   render: () => h("div", { class: "notices", role: "status" }, [
-    state.server && !state.server.ready && doing("preparing", t("common.preparing")),
     state.opening && doing("opening", t("common.opening", { file: state.opening })),
     ...state.notices.map((notice) => h(Notice, { key: notice.id, notice })),
   ]),

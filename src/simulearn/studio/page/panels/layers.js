@@ -24,35 +24,38 @@ export const Layers = {
       const { toolpath, layer, travels } = state.print;
       const all = toolpath.layers.length;
       const top = `${number(toolpath.layers[layer - 1].z, 2)} mm`;
-      const value = t("panels.layerOf", { n: layer, all, mm: top });
+      const value = t("print.layerOf", { n: layer, all, mm: top });
       const length = (role) => lengths.value.get(role);
-      return h("section", { class: ["part-section", { old: props.old }], "aria-label": t("panels.layer") }, [
+      return h("section", { class: ["part-section", { old: props.old }], "aria-label": t("print.layer") }, [
         h("div", { class: "layer-head" }, [
-          h("h2", t("panels.layer")), h("span", { class: "note numbers" }, value),
+          h("h2", t("print.layer")), h("span", { class: "note numbers" }, value),
         ]),
         h("div", { class: "steps-row" }, [
-          iconButton("minus", t("panels.layerDown"), () => showLayer(layer - 1),
+          iconButton("minus", t("print.layerDown"), () => showLayer(layer - 1),
             { class: "icon-button small", disabled: layer === 1 }),
           h("input", {
             type: "range", min: 1, max: all, step: 1, value: layer,
-            "aria-label": t("panels.layer"), "aria-valuetext": value,
+            "aria-label": t("print.layer"), "aria-valuetext": value,
             onInput: (event) => showLayer(Number(event.target.value)), onWheel,
           }),
-          iconButton("plus", t("panels.layerUp"), () => showLayer(layer + 1),
+          iconButton("plus", t("print.layerUp"), () => showLayer(layer + 1),
             { class: "icon-button small", disabled: layer === all }),
         ]),
         h("label", { class: "checkbox" }, [
           h("input", {
             type: "checkbox", role: "switch", checked: travels,
             onChange: (event) => showTravels(event.target.checked),
-          }), t("panels.travels"),
+          }), t("print.travels"),
         ]),
-        h("h3", t("panels.legend")),
+        travels && h("ul", { class: "legend travels" }, ["drawn", "kept"].map((kind) => h("li", { key: kind }, [
+          h("span", { class: ["travel", kind], "aria-hidden": "true" }), h("span", t(`print.travel_${kind}`)),
+        ]))),
+        h("h3", t("print.legend")),
         h("ul", { class: "legend" }, toolpath.roles.map((role) => h("li", {
           key: role, class: { none: length(role) === 0 },
         }, [
           h("span", { class: ["swatch", swatch(role, layer, all)], "aria-hidden": "true" }),
-          h("span", t(`panels.role_${role}`)),
+          h("span", t(`print.role_${role}`)),
           h("span", { class: "numbers" }, length(role) ? metres(length(role)) : "–"),
         ]))),
       ]);

@@ -3,115 +3,88 @@
 import { h, onBeforeUnmount, ref, shallowRef, watch } from "/libraries/vue.js";
 import { sizeOf } from "../service/beads.js";
 import { clock, grams, metres, number } from "../service/format.js";
-import { askPrint, downloadGcode, dropPrint, freshPrint } from "../service/printing.js";
-import { printers } from "../service/api.js";
-import { untilAnswered } from "../service/server.js";
-import { edit, state } from "../store.js";
+import { printerFacts } from "../service/printers.js";
+import { askPrint, downloadPrint, dropPrint, freshPrint } from "../service/printing.js";
+import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { button } from "./controls.js";
 import { facts } from "./fields.js";
 import { Layers } from "./layers.js";
 import { problemNote, Reader, warnings } from "./notes.js";
+import { PrinterChoice } from "./printer.js";
 
-const known = shallowRef(null); // printers of the server, once they are asked for
-
-async function fetchPrinters() {
-  if (known.value === null) known.value = (await untilAnswered(printers)).printers;
-}
-
-/** The choice of a printer; it is part of the document. */
-function choice() {
-  const { printer } = state.document;
-  const list = known.value ?? [];
-  const chosen = list.find(({ name }) => name === printer);
-  const choose = (event) => {
-    const next = event.target.value;
-    const label = t("panels.didPrinter", { printer: list.find(({ name }) => name === next).title });
-    edit((document) => ({ ...document, printer: next }), { label });
-  };
-  return h("div", { class: "printer" }, [
-    h("label", { class: "printer-label", for: "printer" }, t("panels.printer")),
-    h("select", { class: "select", id: "printer", value: printer, onChange: choose }, [
-      !chosen && h("option", { value: printer }, printer),
-      ...list.map(({ name, title }) => h("option", { value: name }, title)),
-    ]),
-    chosen && h("p", { class: "note numbers" }, [
-      `${t("panels.bed")} ${number(chosen.bed.width)} × ${number(chosen.bed.depth)} mm, `,
-      `${t("panels.nozzle")} ${number(chosen.nozzle, 1)} mm`,
-    ]),
-  ]);
-}
+const SAID = "untried"; // the warning that stands beside the printer already
 
 function printFacts({ facts: found, toolpath }) {
   const [width, depth, height] = sizeOf(toolpath);
   return facts([
-    [t("panels.printTime"), clock(found.seconds)],
-    [t("panels.heating"), clock(found.heating_seconds)],
-    [t("panels.filament"), `${metres(found.filament_mm)}, ${grams(found.filament_g)}`],
-    [t("panels.layersCount"), number(found.layers)],
-    [t("panels.printSize"), `${number(width)} × ${number(depth)} × ${number(height, 1)} mm`],
+    [t("print.printTime"), clock(found.seconds)],
+    [t("print.heating"), clock(found.heating_seconds)],
+    [t("print.filament"), `${metres(found.filament_mm)}, ${grams(found.filament_g)}`],
+    [t("print.partMass"), grams(found.part_g)],
+    [t("print.layersCount"), number(found.layers)],
+    [t("print.printSize"), `${number(width)} × ${number(depth)} × ${number(height, 1)} mm`],
   ]);
 }
 
-/** The button that saves the file, and what to look at before it is printed. */
+/** The buttons that save the file, one for each kind that the printer takes, and what to do with it. */
 const Download = {
   setup() {
-    const busy = ref(false);
+    const busy = ref(null); // the format that is being written
     const problem = shallowRef(null);
-    const saved = ref("");
-    watch(() => state.print?.of, () => { saved.value = ""; });
-    const save = async () => {
-      busy.value = true;
+    const save = async (format) => {
+      busy.value = format;
       problem.value = null;
       try {
-        saved.value = await downloadGcode();
+        await downloadPrint(format);
       } catch (failure) {
         problem.value = failure;
       }
-      busy.value = false;
+      busy.value = null;
+    };
+    const words = (format) => {
+      if (busy.value === format) return t("print.downloading");
+      return t(format === "gcode" ? "print.download" : "print.downloadPackage");
     };
     return () => h("div", { class: "download" }, [
-      button(t(busy.value ? "panels.downloading" : "panels.download"), save, {
-        glyph: "download", kind: "primary",
-        disabled: busy.value || !freshPrint() || state.print.state !== "ready",
-      }),
-      saved.value && h("p", { class: "note", role: "status" }, t("panels.downloaded", { file: saved.value })),
-      problem.value && problemNote(t("panels.downloadFailed"), problem.value),
-      h("div", { class: "callout info" }, [h("div", [
-        h("p", [h("strong", t("panels.beforePrint"))]), h("p", t("panels.beforePrintNote")),
-      ])]),
+      ...(printerFacts()?.formats ?? ["gcode"]).map((format, k) => button(words(format), () => save(format), {
+        key: format, glyph: "download", kind: k === 0 ? "primary" : "",
+        disabled: busy.value !== null || !freshPrint() || state.print.state !== "ready",
+      })),
+      problem.value && problemNote(t("print.downloadFailed"), problem.value),
+      h("p", { class: "note" }, t("print.beforePrint")),
+      state.print.facts.brim && h("p", { class: "note" }, t("print.cutBrim")),
     ]);
   },
 };
 
 export const Print = {
   setup() {
-    fetchPrinters();
     watch([() => state.document.grid, () => state.document.printer], askPrint, { immediate: true });
     onBeforeUnmount(dropPrint);
     const Read = Reader(() => (
       freshPrint() && state.print.state === "ready"
-        ? `${t("panels.printTime")} ${clock(state.print.facts.seconds)}` : ""
+        ? `${t("print.printTime")} ${clock(state.print.facts.seconds)}` : ""
     ));
     return () => {
       const { print } = state;
       const old = !freshPrint();
       return h("div", { class: "panel" }, [
-        h("section", { class: "part-section", "aria-label": t("panels.print") }, [
+        h("section", { class: "part-section", "aria-label": t("print.print") }, [
           h(Read),
-          choice(),
-          !print && h("p", { class: "note" }, t("panels.printEmpty")),
-          print?.state === "failed" && problemNote(t("panels.printFailed"), print.problem),
+          h(PrinterChoice),
+          !print && h("p", { class: "note" }, t("print.printEmpty")),
+          print?.state === "failed" && problemNote(t("print.printFailed"), print.problem),
           print && !print.facts && print.state === "asking"
-            && h("p", { class: "note", role: "status" }, t("panels.printAsking")),
+            && h("p", { class: "note", role: "status" }, t("print.printAsking")),
           print?.facts && h("div", { class: ["print-facts", { old }] }, [
-            printFacts(print), ...warnings(print.facts.warnings),
+            printFacts(print), ...warnings(print.facts.warnings.filter(({ code }) => code !== SAID)),
           ]),
         ]),
-        print?.toolpath && h(Layers, { old }),
-        print?.facts && h("section", { class: "part-section", "aria-label": t("panels.download") }, [
+        print?.facts && h("section", { class: "part-section", "aria-label": t("print.download") }, [
           h(Download),
         ]),
+        print?.toolpath && h(Layers, { old }),
       ]);
     };
   },

@@ -1,7 +1,7 @@
 // The bottom line: whether the grid is valid, what the engine answered, and with which model.
 
 import { h, ref, watch } from "/libraries/vue.js";
-import { stale, state, view } from "../store.js";
+import { preparing, stale, state, view } from "../store.js";
 import { saveNow, showConflict } from "../service/saving.js";
 import { formatNumber } from "../text/numbers.js";
 import { t } from "../text/text.js";
@@ -14,8 +14,10 @@ function sentence() {
   const errors = state.check?.errors.length ?? 0;
   if (state.document.grid.beams.length === 0) return t("common.empty");
   if (errors) return t(errors === 1 ? "common.errorOne" : "common.errorMany", { n: errors });
-  if (!state.answer || stale.value)
-    return t(state.connection === "offline" ? "common.noAnswer" : "common.updating");
+  if (!state.answer || stale.value) {
+    if (state.connection === "offline") return t("common.noAnswer");
+    return t(preparing() ? "common.preparingShort" : "common.updating");
+  }
   const { result } = state.answer;
   const size = formatNumber(Math.abs(result.rise_mm), view.language);
   return t(result.rise_mm < 0 ? "common.sinks" : "common.rises", { mm: size });

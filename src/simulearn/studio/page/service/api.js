@@ -63,8 +63,22 @@ export async function simulate(grids, { engine = "learned", signal } = {}) {
 }
 
 export const rank = (task, signal) => post("/api/rank", task, signal);
-export const toolpath = (grids, printer, signal) => post("/api/toolpath", { grids, printer }, signal);
-export const gcode = (grids, printer, names) => post("/api/gcode", { grids, printer, names });
+
+/** Return the printer that the text of a profile describes, or the text of a printer's profile. */
+export const readProfile = (profile) => post("/api/profile", { profile });
+export const profileText = async (name) => (await request(`/api/printers/${name}`, { accept: "*/*" })).text();
+
+// A printer is a name, or { profile: text }.
+const by = (printer) => (typeof printer === "string" ? { printer } : printer);
+export const toolpath = (grids, printer, signal) => post("/api/toolpath", { grids, ...by(printer) }, signal);
+
+/** Return the file that prints grids: a Blob and its name. */
+export async function printFile(grids, printer, names, format) {
+  const response = await request("/api/gcode", {
+    method: "POST", body: { grids, ...by(printer), names, format }, accept: "text/x.gcode, model/3mf",
+  });
+  return { blob: await response.blob(), name: fileNameOf(response) ?? `grid.${format}` };
+}
 
 export const startOptimize = (task) => post("/api/optimize", task);
 export const startFea = (grids) => post("/api/fea", { grids });

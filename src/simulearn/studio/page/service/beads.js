@@ -18,12 +18,14 @@ export function lengthsOf(path, layer) {
   return lengths;
 }
 
-/** Return the size of what is printed, without the skirt: [width, depth, height] in mm. */
+const AROUND = ["skirt", "brim"]; // what is no part of the grid
+
+/** Return the size of what is printed, without skirt and brim: [width, depth, height] in mm. */
 export function sizeOf(path) {
   const low = [Infinity, Infinity];
   const high = [-Infinity, -Infinity];
   path.role.forEach((role, b) => {
-    if (path.roles[role] === "skirt") return;
+    if (AROUND.includes(path.roles[role])) return;
     for (let p = path.starts[b]; p < path.starts[b + 1]; p += 1) {
       path.points[p].forEach((value, axis) => {
         low[axis] = Math.min(low[axis], value - path.width[p] / 2);

@@ -1,10 +1,10 @@
 // The check by finite elements, in the background while the design may be changed further.
 // state.fea has document, reference: the engine's result that is checked, result: by finite elements,
-// seconds, progress: [done, total] frames, state: "queued", "running", "done", "failed", "cancelled",
-// lost: whether the server is silent, problem or message and hint: why it failed.
+// id: of the job, seconds, progress: [done, total] frames, state: "queued", "running", "done", "failed",
+// "cancelled", lost: whether the server is silent, problem or message and hint: why it failed.
 
 import { state } from "../store.js";
-import { Problem, jobFrames, startFea } from "./api.js";
+import { Problem, jobFrames, simulate, startFea } from "./api.js";
 import { runJob } from "./jobs.js";
 
 const FAILED = { code: "no-shapes" };
@@ -12,10 +12,26 @@ const FAILED = { code: "no-shapes" };
 let job = null;
 
 /** Begin to check the current design. */
-export async function startCheck() {
-  cancelCheck();
+export function startCheck() {
   const { document, answer } = state;
   const reference = answer?.document.grid === document.grid ? answer.result : null;
+  return follow(document, reference, () => startFea([document.grid]));
+}
+
+/** Follow a check again that the page followed before it was loaded anew. */
+export async function resumeCheck({ id, document }) {
+  let reference = null;
+  try {
+    const [result] = await simulate([document.grid]);
+    if (result.ok) reference = result;
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem; // without it the shapes are not compared
+  }
+  if (state.fea === null) await follow(document, reference, async () => ({ job: id }));
+}
+
+async function follow(document, reference, begin) {
+  cancelCheck();
   const key = {}; // of this check: answers to an earlier one are left unread
   state.fea = {
     key, document, reference, result: null, state: "queued", lost: false, progress: null, seconds: 0,
@@ -23,7 +39,8 @@ export async function startCheck() {
   const update = (more) => {
     if (state.fea?.key === key) state.fea = { ...state.fea, ...more };
   };
-  job = runJob(() => startFea([document.grid]), ({ state: now, progress, seconds, lost }) => update({
+  job = runJob(begin, ({ id, state: now, progress, seconds, lost }) => update({
+    id,
     state: now === "queued" ? "queued" : "running",
     progress: progress && [progress.done, progress.total], seconds, lost,
   }));

@@ -1,13 +1,15 @@
 // Files in and out: designs and drawings of other programs, opening, dropping, pasting, saving, exporting, links.
 
-import { emptyDocument, readDocument, sameGrid } from "../document/document.js";
+import { emptyDocument, readDocument, sameGrid, samePrinter } from "../document/document.js";
 import { encode } from "../document/link.js";
 import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
+import { download } from "./downloads.js";
 import { showDrawing } from "./drawings.js";
+import { isProfile, openProfile } from "./printers.js";
 
-const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,.html,application/json,image/svg+xml";
+const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,.html,.toml,application/json,image/svg+xml";
 const PASTED = [[/^<(svg|\?xml|!--)/, "common.pastedDrawing"], [/^[{[]/, "common.pasted"]]; // how it begins
 const LATE = 300; // ms after which the page says that it reads a file
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
@@ -22,11 +24,12 @@ export function chooseFile() {
 
 let openings = 0; // only the last one counts
 
-/** Replace the design by that of a file, as one edit.
+/** Replace the design by that of a file, as one edit; a printer's profile takes the printer's place.
  *
  * options: how a drawing is to be read; where its unit is not known, the page asks for it.
  */
 export async function open(file, options = {}) {
+  if (isProfile(file)) return openProfile(file);
   openings += 1;
   const turn = openings;
   const late = setTimeout(() => { state.opening = file.name; }, LATE);
@@ -36,12 +39,12 @@ export async function open(file, options = {}) {
     document = documentOf(found);
   } catch (problem) {
     if (turn === openings) refuse(file, problem, options);
-    return;
+    return null;
   } finally {
     clearTimeout(late);
     if (turn === openings) state.opening = null;
   }
-  if (turn !== openings) return;
+  if (turn !== openings) return null;
   const { drawing, messages = [] } = found;
   place(document, t("common.didOpen", { file: file.name }));
   if (drawing) showDrawing(file, options, found);
@@ -49,6 +52,7 @@ export async function open(file, options = {}) {
     const title = t("common.openNotes", { file: file.name });
     state.dialog = { name: "message", title, text: t("common.openMended"), messages };
   }
+  return null;
 }
 
 /** Return the document of an opened file; a drawing keeps the material and the printer. */
@@ -79,6 +83,7 @@ export function refuse(file, problem, options) {
 /** Show another design in place of the current one; undo brings that back. */
 export function place(document, label) {
   edit((before) => (sameGrid(before.grid, document.grid) && before.name === document.name
+    && samePrinter(before.printer, document.printer)
     && document.goals.length === 0 && before.goals.length === 0 ? before : document), { label });
   select({});
   state.placed += 1;
@@ -102,15 +107,6 @@ export async function saveExport(format, engine) {
 export function fileName() {
   const plain = state.document.name.normalize("NFKD").replace(/[^\w-]+/g, "-").replace(/^-+|-+$/g, "");
   return plain.slice(0, 60) || "design";
-}
-
-function download(blob, name) {
-  const link = globalThis.document.createElement("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000); // ms; the browser has read it by then
-  notify(t("common.downloaded", { file: name }));
 }
 
 /** Copy a link that holds the whole document. */

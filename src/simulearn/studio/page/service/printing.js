@@ -3,8 +3,9 @@
 // "failed", problem. An older toolpath stays until the new one is there; `freshPrint` says which it is.
 
 import { state } from "../store.js";
-import { gcode, toolpath } from "./api.js";
+import { printFile, toolpath } from "./api.js";
 import { fileName } from "./beads.js";
+import { download } from "./downloads.js";
 import { latest } from "./latest.js";
 
 const QUIET = 300; // ms without a change until a toolpath is asked for
@@ -69,15 +70,9 @@ export function showTravels(travels) {
   state.print = { ...state.print, travels };
 }
 
-/** Have the browser save the G-code of the current design. */
-export async function downloadGcode() {
+/** Have the browser save the file that prints the current design: "gcode" or "gcode.3mf". */
+export async function downloadPrint(format) {
   const { grid, printer, name } = state.document;
-  const stem = fileName(name);
-  const answer = await gcode([grid], printer, [stem]);
-  const link = globalThis.document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([answer.gcode], { type: "text/x.gcode" }));
-  link.download = `${stem}.gcode`;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000); // after the download has begun
-  return link.download;
+  const file = await printFile([grid], printer, [fileName(name)], format);
+  download(file.blob, file.name);
 }

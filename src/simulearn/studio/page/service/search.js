@@ -2,6 +2,7 @@
 // taken or discarded. state.search has
 //   document: that it is for, until: seconds that it may take,
 //   state: "queued", "running", "stopping", "done", "failed", lost: whether the server is silent,
+//   id: of the job, once the server has taken it,
 //   passed: seconds since it began, 0 while it gets ready,
 //   steps: {iteration, phase, seconds, designs, error_mm, grid} so far,
 //   best: {grid, error_mm, error_fea_mm, ...} and stages on the way there once it is done,
@@ -21,23 +22,32 @@ const SHAPES = latest(0);
 let job = null;
 
 /** Begin to search for a design that comes closer to the goals; an earlier search is forgotten. */
-export async function startSearch({ joints, actuators, seconds }) {
-  discardSearch();
+export function startSearch({ joints, actuators, seconds }) {
   const { document } = state;
   const free = { ...(joints ? {} : { joints: [] }), ...(actuators ? {} : { actuators: [] }) };
   const task = taskOf(document, { free, limits: { seconds } });
+  return follow(document, seconds, () => startOptimize(task));
+}
+
+/** Follow a search again that the page followed before it was loaded anew. */
+export function resumeSearch({ id, document, until }) {
+  return follow(document, until, async () => ({ job: id }));
+}
+
+async function follow(document, seconds, begin) {
+  discardSearch();
   const key = {}; // of this search: answers to an earlier one are left unread
   state.search = { key, document, until: seconds, state: "queued", lost: false, steps: [], passed: 0 };
   const update = (more) => {
     if (state.search?.key === key) state.search = { ...state.search, ...more };
   };
   let ready = null; // s after which the search itself began: kernels are compiled before
-  job = runJob(() => startOptimize(task), ({ state: now, steps, seconds: passed, lost }) => {
+  job = runJob(begin, ({ id, state: now, steps, seconds: passed, lost }) => {
     if (steps.length) ready ??= passed - steps.at(-1).seconds;
     const stopping = state.search?.state === "stopping";
     update({
       state: stopping ? "stopping" : now === "queued" ? now : "running",
-      steps, lost, passed: ready === null ? 0 : passed - ready,
+      id, steps, lost, passed: ready === null ? 0 : passed - ready,
     });
   });
   try {

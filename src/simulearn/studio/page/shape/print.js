@@ -1,21 +1,20 @@
 // A toolpath in the scene: ribbons by role up to a layer, travels, and the bed.
 
 import { THREE } from "/libraries/three.js";
+import { bedLines } from "./bed.js";
 import { plain } from "./material.js";
-import { ribbonsOf } from "./ribbons.js";
+import { ribbonsOf, TONES } from "./ribbons.js";
 
-const TONES = 6; // roles, and active beads of the upper half
 const FADED = { light: 0.62, dark: 0.58 }; // of layers below the current one, towards the canvas
 
 const VERTEX = `
 attribute float tone, side;
-uniform vec3 palette[${TONES}];
+uniform vec3 palette[${TONES.length}];
 varying vec3 vColour;
 varying float vSide;
 void main() {
   int k = int(tone + 0.5);
-  vColour = k == 0 ? palette[0] : k == 1 ? palette[1] : k == 2 ? palette[2] : k == 3 ? palette[3]
-    : k == 4 ? palette[4] : palette[5];
+  vColour = ${TONES.map((_, k) => (k ? `k == ${k} ? palette[${k}] : ` : "")).join("")}palette[0];
   vSide = side;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
@@ -33,7 +32,7 @@ void main() {
 
 /** Create the drawing of a print. */
 export function createPrint() {
-  const palette = Array.from({ length: TONES }, () => new THREE.Vector3());
+  const palette = TONES.map(() => new THREE.Vector3());
   const canvas = new THREE.Vector3();
   const material = (faded) => new THREE.ShaderMaterial({
     vertexShader: VERTEX, fragmentShader: FRAGMENT, side: THREE.DoubleSide,
@@ -41,16 +40,20 @@ export function createPrint() {
   });
   const materials = [material(FADED.light), material(0)];
   const mesh = new THREE.Mesh(new THREE.BufferGeometry(), materials);
-  const travelMaterial = new THREE.LineDashedMaterial({
-    dashSize: 1.6, gapSize: 1.2, transparent: true, opacity: 0.8, // mm
-  });
-  const travels = new THREE.LineSegments(new THREE.BufferGeometry(), travelMaterial);
+  const travelMaterials = { // dashed where filament is drawn back
+    drawn: new THREE.LineDashedMaterial({ dashSize: 1.6, gapSize: 1.2, transparent: true, opacity: 0.8 }), // mm
+    kept: new THREE.LineBasicMaterial({ transparent: true, opacity: 0.8 }),
+  };
+  const travels = Object.entries(travelMaterials).map(([kind, one]) => (
+    { kind, lines: new THREE.LineSegments(new THREE.BufferGeometry(), one) }));
   const bedMaterial = new THREE.LineBasicMaterial();
   const cellMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.4 });
   const bed = new THREE.LineSegments(new THREE.BufferGeometry(), bedMaterial);
   const cells = new THREE.LineSegments(new THREE.BufferGeometry(), cellMaterial);
+  const zoneMaterial = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.55 });
+  const zones = new THREE.LineSegments(new THREE.BufferGeometry(), zoneMaterial);
   const group = new THREE.Group();
-  group.add(mesh, travels, bed, cells);
+  group.add(mesh, ...travels.map(({ lines }) => lines), bed, cells, zones);
   for (const one of group.children) one.frustumCulled = false;
   let [ribbons, path] = [null, null];
 
@@ -59,19 +62,17 @@ export function createPrint() {
     object.geometry = new THREE.BufferGeometry();
     object.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(positions), 3));
   };
-  const buildBed = ({ low, high }) => {
-    const [[x0, y0], [x1, y1]] = [low, high];
-    replace(bed, [x0, y0, 0, x1, y0, 0, x1, y0, 0, x1, y1, 0, x1, y1, 0, x0, y1, 0, x0, y1, 0, x0, y0, 0]);
-    const points = [];
-    for (let x = Math.ceil(x0 / 20) * 20; x <= x1; x += 20) points.push(x, y0, 0, x, y1, 0);
-    for (let y = Math.ceil(y0 / 20) * 20; y <= y1; y += 20) points.push(x0, y, 0, x1, y, 0);
-    replace(cells, points);
+  const buildBed = (box) => {
+    const { outline, cells: squares, excluded } = bedLines(box);
+    replace(bed, outline);
+    replace(cells, squares);
+    replace(zones, excluded);
   };
 
   return {
     group,
     get path() { return path; },
-    /** Show a toolpath (or none) on a bed { low: [x, y], high }. */
+    /** Show a toolpath (or none) on a bed { shape, low: [x, y], high, excluded }. */
     show(toolpath, box) {
       path = toolpath;
       if (toolpath === null) return;
@@ -80,10 +81,11 @@ export function createPrint() {
       mesh.geometry.setAttribute("side", new THREE.BufferAttribute(ribbons.sides, 1));
       mesh.geometry.setAttribute("tone", new THREE.BufferAttribute(ribbons.tones, 1));
       mesh.geometry.setIndex(new THREE.BufferAttribute(ribbons.index, 1));
-      replace(travels, ribbons.travels);
-      travels.computeLineDistances();
-      bed.visible = box !== null;
-      cells.visible = box !== null;
+      for (const { kind, lines } of travels) {
+        replace(lines, ribbons.travels[kind].points);
+        lines.computeLineDistances();
+      }
+      for (const one of [bed, cells, zones]) one.visible = box !== null;
       if (box) buildBed(box);
     },
     /** Show the layers 1 to `layer`, the last of them clearly; travels are those of the last one. */
@@ -94,21 +96,27 @@ export function createPrint() {
       mesh.geometry.clearGroups();
       mesh.geometry.addGroup(0, from, 0);
       mesh.geometry.addGroup(from, to - from, 1);
-      travels.visible = withTravels;
-      const [first, end] = [ribbons.travelStart[k], ribbons.travelStart[k + 1]];
-      travels.geometry.setDrawRange(first, end - first);
+      for (const { kind, lines } of travels) {
+        lines.visible = withTravels;
+        const [first, end] = ribbons.travels[kind].start.slice(k, k + 2);
+        lines.geometry.setDrawRange(first, end - first);
+      }
     },
     setTheme(theme) {
       const mix = (a, b, t) => a.map((x, k) => x + t * (b[k] - x));
-      const { beam, joint, text, bottom, top } = theme;
-      // skirt, shell, active in the lower half, passive, joint, active in the upper half
-      [mix(beam, theme.canvas, 0.4), mix(joint, text, 0.45), bottom, beam, joint, top]
-        .forEach((colour, k) => palette[k].fromArray(colour));
+      const { beam, joint, text, bottom, top, canvas: back } = theme;
+      const colours = { // as in style/panels.css
+        skirt: mix(beam, back, 0.4), shell: mix(joint, text, 0.45), active: bottom, passive: beam, joint,
+        upper: top, brim: theme.brim,
+      };
+      TONES.forEach((tone, k) => palette[k].fromArray(colours[tone]));
       canvas.fromArray(theme.canvas);
       materials[0].uniforms.faded.value = theme.dark ? FADED.dark : FADED.light;
-      travelMaterial.color = plain(theme.accent);
+      travelMaterials.drawn.color = plain(theme.accent);
+      travelMaterials.kept.color = plain(theme.textSoft);
       bedMaterial.color = plain(theme.lineStrong);
       cellMaterial.color = plain(theme.line);
+      zoneMaterial.color = plain(theme.error);
     },
     /** Return the corners of what is printed and of the bed, to be brought into view. */
     points() {
@@ -120,7 +128,7 @@ export function createPrint() {
     },
     dispose() {
       for (const { geometry } of group.children) geometry.dispose();
-      for (const one of [...materials, travelMaterial, bedMaterial, cellMaterial]) one.dispose();
+      for (const one of [...materials, ...Object.values(travelMaterials), bedMaterial, cellMaterial, zoneMaterial]) one.dispose();
     },
   };
 }

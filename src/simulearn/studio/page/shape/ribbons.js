@@ -1,14 +1,16 @@
 // A toolpath as flat ribbons of the beads' widths: plain arrays, built once, ordered by layers so
 // that a layer is a range of the triangles.
 
+/** What has a colour of its own; "upper" are active beads of the upper half. */
+export const TONES = ["skirt", "shell", "active", "passive", "joint", "upper", "brim"];
+
 const SHARPEST = 2.5; // a corner's ribbon is at most this much wider than the bead
 
-/** Return { positions, sides, tones, index, layerStart, travels, travelStart, bounds } of a toolpath
- * (`toolpath_to_dict`).
+/** Return { positions, sides, tones, index, layerStart, travels } of a toolpath (`toolpath_to_dict`).
  *
- * sides: -1 at a bead's right edge, 1 at its left one; tones: the role's number, 5 for actuators of the
- * upper half; layerStart[k]: first index of layer k, with the end after the last one; travels: ends of
- * the moves between beads, travelStart likewise by points.
+ * sides: -1 at a bead's right edge, 1 at its left one; tones: numbers in `TONES`; layerStart[k]: first
+ * index of layer k, with the end after the last one; travels: { drawn, kept }, those with filament drawn
+ * back and the others, each { points: ends of the moves between beads, start: likewise by points }.
  */
 export function ribbonsOf(toolpath) {
   const { starts, points, role, roles, layers } = toolpath;
@@ -20,19 +22,20 @@ export function ribbonsOf(toolpath) {
   const tones = new Uint8Array(2 * total);
   const index = new Uint32Array(6 * Math.max(0, total - role.length));
   const layerStart = [];
-  const travels = [];
-  const travelStart = [];
+  const travels = { drawn: { points: [], start: [] }, kept: { points: [], start: [] } };
+  const beginLayer = () => {
+    layerStart.push(at);
+    for (const { points: ends, start } of Object.values(travels)) start.push(ends.length / 3);
+  };
   let at = 0;
   for (let b = 0; b < role.length; b += 1) {
-    while (layerStart.length <= layerOf[b]) {
-      layerStart.push(at);
-      travelStart.push(travels.length / 3);
-    }
+    while (layerStart.length <= layerOf[b]) beginLayer();
     const { z } = layers[layerOf[b]];
     const [first, end] = [starts[b], starts[b + 1]];
     if (b > 0 && layerOf[b - 1] === layerOf[b])
-      travels.push(...points[starts[b] - 1], z, ...points[first], z);
+      travels[toolpath.drawn[b] ? "drawn" : "kept"].points.push(...points[first - 1], z, ...points[first], z);
     const upper = role[b] === active && layerOf[b] >= layers.length / 2;
+    const tone = Math.max(0, TONES.indexOf(upper ? "upper" : roles[role[b]]));
     for (let k = first; k < end; k += 1) {
       const [nx, ny] = offset(points, first, end, k);
       const half = (toolpath.width[k < end - 1 ? k : k - 1] || 0) / 2;
@@ -40,18 +43,15 @@ export function ribbonsOf(toolpath) {
       positions.set([points[k][0] + nx * half, points[k][1] + ny * half, z], 6 * k + 3);
       sides[2 * k] = -1;
       sides[2 * k + 1] = 1;
-      tones.fill(upper ? roles.length : role[b], 2 * k, 2 * k + 2);
+      tones.fill(tone, 2 * k, 2 * k + 2);
       if (k < end - 1) {
         index.set([2 * k, 2 * k + 2, 2 * k + 1, 2 * k + 1, 2 * k + 2, 2 * k + 3], at);
         at += 6;
       }
     }
   }
-  while (layerStart.length <= layers.length) {
-    layerStart.push(at);
-    travelStart.push(travels.length / 3);
-  }
-  return { positions, sides, tones, index, layerStart, travels: new Float32Array(travels), travelStart };
+  while (layerStart.length <= layers.length) beginLayer();
+  return { positions, sides, tones, index, layerStart, travels };
 }
 
 /** Return the mitred normal of a path at point k, longer where it turns. */

@@ -1,7 +1,7 @@
 // The shape: the morphing grid in space, frame by frame, with what is written over it.
 
 import { computed, h, onBeforeUnmount, onMounted, ref, shallowRef, watch } from "/libraries/vue.js";
-import { select, stale, state, view } from "../store.js";
+import { preparing, select, stale, state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { deviation } from "./deviation.js";
 import { Legend } from "./legend.js";
@@ -191,7 +191,7 @@ export const Shape = {
         ]),
         !broken.value && !shown.value && !printing.value && h("div", { class: "shape-message" }, [
           h("strong", t(state.busy ? "shape.computing" : "shape.empty")),
-          !state.busy && h("p", t("shape.emptyHint")),
+          state.busy ? preparing() && h("p", t("common.preparing")) : h("p", t("shape.emptyHint")),
         ]),
         !broken.value && !printing.value && h(Summary, {
           result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value,

@@ -5,7 +5,7 @@ import { parseColour } from "./colours.js";
 const NAMES = {
   canvas: "--canvas", line: "--line", lineStrong: "--line-strong", text: "--text", textSoft: "--text-soft",
   accent: "--accent", beam: "--beam", joint: "--joint", top: "--actuator-top", bottom: "--actuator-bottom",
-  target: "--target", error: "--error", surface: "--surface",
+  target: "--target", error: "--error", surface: "--surface", brim: "--brim",
 };
 
 /** Return {canvas: [r, g, b], ...} as they are at an element; `dark` says whether the canvas is. */

@@ -237,13 +237,15 @@ export function createViewer(container, { events = {}, still = () => false } = {
     /** Show a toolpath in place of the shape, seen from above; null brings the shape back. */
     setPrint(toolpath, bed = null) {
       const on = toolpath !== null;
+      const place = JSON.stringify([bed?.low, bed?.high]);
+      const moved = on && printing && place !== kept.place; // to a bed that lies elsewhere
       if (print.path !== toolpath) print.show(toolpath, bed);
       const changed = on !== printing;
       printing = on;
       arrange();
-      if (!changed) return;
+      if (!changed && !moved) return;
       if (on) {
-        kept = { ...camera.state(), touched: camera.touched };
+        kept = changed ? { ...camera.state(), touched: camera.touched, place } : { ...kept, place };
         viewer.fit({ view: PRINT_VIEW, animate: false });
       } else if (kept.touched) camera.set(kept);
       else viewer.fit({ view: [kept.azimuth, kept.polar], animate: false });

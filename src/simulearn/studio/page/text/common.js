@@ -3,7 +3,8 @@ export const common = {
   en: {
     starting: "Opening…",
     waiting: "The server does not answer yet. Trying again…",
-    preparing: "Preparing the model: the first time on this machine this takes about 20 seconds.",
+    preparing: "The model is prepared: the first time on a machine this takes about 20 seconds.",
+    preparingShort: "Preparing the model…",
     studio: "SimuLearn studio",
     tip: "Drag a joint, or click a beam and press + or −: the shape follows.",
     tipClose: "Do not show this hint again",
@@ -265,7 +266,8 @@ export const common = {
   de: {
     starting: "Wird geöffnet …",
     waiting: "Der Server antwortet noch nicht. Neuer Versuch …",
-    preparing: "Das Modell wird vorbereitet: beim ersten Mal auf diesem Rechner dauert das etwa 20 Sekunden.",
+    preparing: "Das Modell wird vorbereitet: beim ersten Mal auf einem Rechner dauert das etwa 20 Sekunden.",
+    preparingShort: "Das Modell wird vorbereitet …",
     studio: "SimuLearn-Studio",
     tip: "Einen Knoten ziehen, oder einen Stab anklicken und + oder − drücken: die Form folgt.",
     tipClose: "Diesen Hinweis nicht mehr zeigen",

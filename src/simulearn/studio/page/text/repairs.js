@@ -1,8 +1,9 @@
 // What `document/repairs.js` offers to do about a message.
 export const repairs = {
   en: {
-    setActuator: "Set the actuator to {percent} %",
-    clearActuator: "Remove the actuator",
+    setActuator: "Set beam {beam} to {percent} %",
+    clearActuator: "Remove the actuator of beam {beam}",
+    setActuators: "Mend all {count} actuators",
     merge: "Merge joints {a} and {b}",
     once: "Draw beams {a} and {b} once where they run together",
     joinBeams: "Add a joint where beams {a} and {b} cross",
@@ -14,10 +15,13 @@ export const repairs = {
     removeDangling: "Remove the {count} dangling beams",
     removeBeams: "Remove the {count} beams of the smaller parts",
     removeJoint: "Remove joint {joint}",
+    countFromZero: "Count the joints from 0",
+    scale: "Multiply all coordinates by {factor}",
   },
   de: {
-    setActuator: "Aktor auf {percent} % setzen",
-    clearActuator: "Aktor entfernen",
+    setActuator: "Stab {beam} auf {percent} % setzen",
+    clearActuator: "Aktor von Stab {beam} entfernen",
+    setActuators: "Alle {count} Aktoren ausbessern",
     merge: "Knoten {a} und {b} verbinden",
     once: "Stäbe {a} und {b} nur einmal zeichnen, wo sie zusammenlaufen",
     joinBeams: "Knoten setzen, wo sich Stäbe {a} und {b} kreuzen",
@@ -29,5 +33,7 @@ export const repairs = {
     removeDangling: "Die {count} losen Stäbe entfernen",
     removeBeams: "Die {count} Stäbe der kleineren Teile entfernen",
     removeJoint: "Knoten {joint} entfernen",
+    countFromZero: "Die Knoten von 0 an zählen",
+    scale: "Alle Koordinaten mit {factor} malnehmen",
   },
 };
