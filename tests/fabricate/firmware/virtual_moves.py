@@ -17,6 +17,7 @@ RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
 UNLOADS = 20.01  # mm of filament; more comes out of the melt zone
 JUMP = 50.0  # mm of filament in one move without a way (Klipper: max_extrude_only_distance)
 WIDEST = 4.0  # times the nozzle squared: section of a bead (Klipper: max_extrude_cross_section)
+TRICKLE = 1.0  # mm of filament
 PURGE = 1.5  # mm of filament on a millimetre of a purge line
 TINY = 1e-6
 
@@ -136,12 +137,13 @@ class Mover:
 
     def extruded(self, fed: float, away: Any, z: Any) -> None:
         s = self.state
-        if self.printing and not self.beads and fed > 0 and away is not HIDDEN and away > TINY:
+        along = away is not HIDDEN and away > TINY
+        if self.printing and not self.beads and fed > 0 and along:
             self.begins()
         if s.coldest is HIDDEN:
             self.trace.hidden += 1
-        elif s.coldest < self.limits.cold and (fed > 0 or not self.beads):
-            # A nozzle that was just switched off is still warm enough to draw back.
+        elif s.coldest < self.limits.cold and ((along and fed > TRICKLE) or not self.beads):
+            # A nozzle that was just switched off is still warm; it must not smear the print.
             self.danger("cold", f"the nozzle may have {s.coldest:g} C")
         self.trace.fed += fed
         if known(s.back):
