@@ -9,8 +9,8 @@ import shapely
 from reading import read
 
 from simulearn.fabricate import load_printer, prepare
-from simulearn.fabricate.regions import _cuts
 from simulearn.fabricate.motion import reach
+from simulearn.fabricate.regions import _cuts
 from simulearn.grid import Grid, Rules, draw_valid, library, make, outline
 from simulearn.material import load_material
 
