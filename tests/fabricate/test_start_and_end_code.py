@@ -188,6 +188,8 @@ def test_e_in_the_end_code_is_relative_and_nothing_is_unloaded():
     # What lies drawn back at the end is pushed back before the next print.
     assert "G1 E7 F2700" in text
     assert "draws back 23 mm of filament in all" in refusal("ender-3", end="G1 E-9\nG1 E-9")
+    assert "does not push it back (G11)" in refusal("ender-3", end="G10")
+    assert "does not push it back (G11)" in refusal("ender-3", READY + "G10")
     assert "unloads the filament" in refusal("prusa-mk4", end="M702")
     assert "unloads the filament" in refusal("bambu-x1", end="M620 S255")
     assert "unloads the filament" in refusal("bambu-x1", end="T255")

@@ -102,7 +102,9 @@ def end_code(printer: Printer, settings: Settings, frame: Frame) -> Script:
         print=Box(frame.low, frame.high, frame.top),
         cold=heat.cold_limit(printer),
     )
-    return _script(printer, settings, frame, "end", state)
+    script = _script(printer, settings, frame, "end", state)
+    _pushed_back(script.state, f"{printer.name}: code.end")
+    return script
 
 
 def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Message]:
@@ -224,8 +226,16 @@ def _ready(state: State, printer: Printer) -> None:
             f"{where}: probes the bed (G29), but homing (G28) switches levelling off; write "
             f"{better} after both"
         )
+    _pushed_back(state, where)
+
+
+def _pushed_back(state: State, where: str) -> None:
+    """Make sure that the next moves do not begin with filament that G10 has drawn back."""
     if state.retracted:
-        raise InputError(f"{where}: draws filament back (G10) and does not push it back (G11)")
+        raise InputError(
+            f"{where}: draws filament back (G10) and does not push it back (G11); write G1 E-2, "
+            f"which is followed, or both"
+        )
 
 
 def _ascii(code: str, where: str) -> None:

@@ -45,8 +45,8 @@ def move(command: Command, state: State, printer: Printer, where: str) -> None:
     value = command.number("E", where)
     if state.on_bed and value is None and (command.words.keys() & {"X", "Y"}):
         raise InputError(
-            f"{where}: moves across the bed with the nozzle on it; write a move upwards before "
-            f"it, as G0 Z5"
+            f"{where}: moves across the bed with the nozzle on it, as far as is known after "
+            f"homing; write a move in Z before it, as G0 Z5"
         )
     if value is not None:
         _feed(value, _length(command, before, state), state, printer, where)
