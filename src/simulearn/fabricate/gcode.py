@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.fabricate import markers
-from simulearn.fabricate.around import after, before, begin
+from simulearn.fabricate.around import after, before, begin, off
 from simulearn.fabricate.code import end_code, frame_of, start_code
 from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.header import footer, header
@@ -80,7 +80,8 @@ def gcode(
     frame = frame_of(path, moves)
     firmware = printer.firmware
     body = list(_body(path, moves, durations, settings, printer, names))
-    stop, end = list(after(printer)), end_code(printer, settings, frame).lines
+    ended = end_code(printer, settings, frame)
+    stop, end = list(after(printer)), [*ended.lines, *off(ended.state)]
     if firmware == "reprap":
         # From the end upwards, Duet Web Control takes what stands before a G90 for relative and
         # finds no height; the moves of the print have left the machine in absolute coordinates.
