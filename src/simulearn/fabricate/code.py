@@ -14,7 +14,6 @@ from simulearn.fabricate import heat
 from simulearn.fabricate.commands import Command, commands
 from simulearn.fabricate.firmware import DIALECTS
 from simulearn.fabricate.machine import Machine
-from simulearn.fabricate.motion import reach
 from simulearn.fabricate.moves import Moves
 from simulearn.fabricate.placeholders import fill, fill_comment
 from simulearn.fabricate.printer import Printer
@@ -117,8 +116,7 @@ def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Me
 
 def lift(settings: Settings, printer: Printer) -> str:
     """Return the move that takes the nozzle off the bed, in absolute coordinates."""
-    height = min(LIFT, reach(printer)["Z"][1])
-    return f"G0 Z{height:g} F{settings.speed_z:g}"
+    return f"G0 Z{min(LIFT, printer.bed.height):g} F{settings.speed_z:g}"
 
 
 def _script(printer: Printer, settings: Settings, frame: Frame, which: str, state: State) -> Script:

@@ -123,6 +123,13 @@ class Reach(_Table):
     y: _Place | None = None
     z: _Place | None = None
 
+    @field_validator("x", "y", "z")
+    @classmethod
+    def _upwards(cls, given: tuple[float, float] | None) -> tuple[float, float] | None:
+        if given is not None and given[0] >= given[1]:
+            raise ValueError(f"goes from {given[0]:g} to {given[1]:g}; the smaller number is first")
+        return given
+
 
 class Extruder(_Table):
     """The filament's diameter (mm), how E is counted, and how far the nozzle lifts to travel."""
