@@ -109,7 +109,7 @@ shape = "round"
 width = 240.0
 depth = 240.0
 origin = "centre"
-excluded = [[[60.0, -120.0], [120.0, -70.0]]]
+excluded = [[[80.0, -120.0], [120.0, -60.0]]]
 """
 # As people draw: lines that end short of others, run past them, cross them and end on them.
 SKETCH = """<svg xmlns="http://www.w3.org/2000/svg" fill="none" viewBox="0 0 195 130"

@@ -2,6 +2,7 @@
 
 import io
 import re
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -18,10 +19,10 @@ tried = ""
 sources = ["its manual, https://example.org/manual"]
 [bed]
 shape = "round"
-width = 180.0
-depth = 180.0
+width = 260.0
+depth = 260.0
 origin = "centre"
-excluded = [[[-90.0, -90.0], [-60.0, -60.0]]]
+excluded = [[[-130.0, -130.0], [-90.0, -90.0]]]
 """
 
 
@@ -55,7 +56,7 @@ def test_a_profile_of_ones_own_is_used_saved_and_shared(printing, page, visit, s
     open_profile(printing, OWN)
     chosen = printing.get_by_label("Printer", exact=True)
     expect(chosen.locator("option:checked")).to_have_text("My printer (own profile)")
-    expect(printing.get_by_text("Round bed 180 mm, nozzle 0.4 mm, ")).to_be_visible()
+    expect(printing.get_by_text("Round bed 260 mm, nozzle 0.4 mm, ")).to_be_visible()
     expect(printing.get_by_text("One zone of the bed stays empty.")).to_be_visible()
     printing.get_by_text("What the profile follows (1)").click()
     link = printing.get_by_role("link", name="https://example.org/manual")
@@ -73,10 +74,10 @@ def test_a_profile_of_ones_own_is_used_saved_and_shared(printing, page, visit, s
     do.saved(page)
     page.reload()
     printing = do.tab(page, "Print")
-    expect(printing.get_by_text("Round bed 180 mm")).to_be_visible()
+    expect(printing.get_by_text("Round bed 260 mm")).to_be_visible()
     other = do.opened(visit(), studio.url)  # somebody else, who is sent the file
     do.open_file(other, "design.json", mine)
-    expect(do.tab(other, "Print").get_by_text("Round bed 180 mm")).to_be_visible()
+    expect(do.tab(other, "Print").get_by_text("Round bed 260 mm")).to_be_visible()
     do.button(page, "Undo: printer: My printer").click()
     expect(printing.get_by_label("Printer", exact=True)).to_have_value("ender-3")
 
@@ -115,9 +116,9 @@ def test_a_profile_to_begin_from_is_saved(printing, page):
         do.button(printing, "Save profile").click()
     assert waiting.value.suggested_filename == "ender-3.toml"
     text = do.downloaded(waiting.value)
-    open_profile(printing, text.replace("[bed]", '[bed]\nshape = "rectangle"', 1).encode())
+    open_profile(printing, re.sub(r"(?m)^title = .*$", 'title = "Mine"', text).encode())
     chosen = printing.get_by_label("Printer", exact=True).locator("option:checked")
-    expect(chosen).to_have_text(re.compile(r"\(own profile\)$"))
+    expect(chosen).to_have_text("Mine (own profile)")
 
 
 def red(locator):
@@ -132,7 +133,7 @@ def red(locator):
 def test_a_bed_that_lies_elsewhere_comes_into_view(printing, page):
     view = page.get_by_role("application", name="Shape in space").locator("canvas")
     assert len(red(view)) == 0
-    both = OWN.replace(b"[-60.0, -60.0]]]", b"[-60.0, -60.0]], [[60.0, 60.0], [90.0, 90.0]]]")
+    both = OWN.replace(b"[-90.0, -90.0]]]", b"[-90.0, -90.0]], [[90.0, 90.0], [130.0, 130.0]]]")
     open_profile(printing, both)
     expect(printing.get_by_text("2 zones of the bed stay empty.")).to_be_visible()
     expect(do.button(printing, "Download G-code")).to_be_enabled()
@@ -156,3 +157,13 @@ def test_layers_and_roles(printing):
     expect(printing.get_by_text("with filament drawn back: out of the part")).to_be_visible()
     expect(printing.get_by_text("Cut the brim off before the bath")).to_be_visible()
     expect(printing.get_by_role("listitem").filter(has_text="Brim")).to_be_visible()
+
+
+def test_a_printer_that_takes_packages_has_a_button_for_them(printing, page):
+    printing.get_by_label("Printer", exact=True).select_option("bambu-x1")
+    with page.expect_download() as waiting:
+        do.button(printing, "Download .gcode.3mf").click()
+    assert waiting.value.suggested_filename == "twist.gcode.3mf"
+    with ZipFile(waiting.value.path()) as package:
+        assert "Metadata/plate_1.gcode" in package.namelist()
+    expect(do.button(printing, "Download G-code")).to_be_enabled()

@@ -19,7 +19,7 @@ from simulearn.fabricate.moves import Moves
 from simulearn.fabricate.placeholders import fill, fill_comment
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
-from simulearn.fabricate.state import State
+from simulearn.fabricate.state import Box, State
 from simulearn.fabricate.toolpath import Toolpath
 from simulearn.grid import Message
 
@@ -33,18 +33,20 @@ class Frame:
     Attributes:
         low: least x and y of what is printed, mm.
         high: greatest x and y.
+        top: height of what is printed, mm.
         last: x, y and z of the nozzle after the print, mm.
     """
 
     low: tuple[float, float]
     high: tuple[float, float]
+    top: float
     last: tuple[float, float, float]
 
 
 def frame_of(path: Toolpath, moves: Moves) -> Frame:
     """Return where a toolpath is printed."""
     low, high = path.bounds.tolist()
-    return Frame(tuple(low), tuple(high), tuple(moves.places[-1].tolist()))
+    return Frame(tuple(low), tuple(high), path.layers[-1].z, tuple(moves.places[-1].tolist()))
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ def end_code(printer: Printer, settings: Settings, frame: Frame) -> Script:
         e=0.0,
         back=settings.retraction,
         hot=settings.temperature,
+        print=Box(frame.low, frame.high, frame.top),
         cold=heat.cold_limit(printer),
     )
     return _script(printer, settings, frame, "end", state)
@@ -128,7 +131,7 @@ def _script(printer: Printer, settings: Settings, frame: Frame, which: str, stat
         _ascii(code, where)
         code = fill(code, words, where).rstrip()
         for command in _commands(code, printer, where):
-            if which == "start" and _lifts(command, machine.state, where):
+            if which == "start" and _lifts(command, machine.state, printer, where):
                 lines += _off_bed(machine, settings, where)
             machine.run(command, where)
             _in_dialect(command, printer, where)
@@ -186,10 +189,10 @@ def _in_dialect(command: Command, printer: Printer, where: str) -> None:
         )
 
 
-def _lifts(command: Command, state: State, where: str) -> bool:
+def _lifts(command: Command, state: State, printer: Printer, where: str) -> bool:
     """Return whether a command lets a hot nozzle wait on the bed."""
     low = state.least_z is not None and not state.clear
-    return low and command.name in heat.COMMANDS and heat.waits(command, state, where)
+    return low and command.name in heat.COMMANDS and heat.waits(command, state, printer, where)
 
 
 def _off_bed(machine: Machine, settings: Settings, where: str) -> list[str]:
@@ -217,6 +220,12 @@ def _ready(state: State, printer: Printer) -> None:
     for axis, homed in state.homed.items():
         if homed is False:
             raise InputError(f"{where}: does not home {axis}; write G28 into it")
+    if printer.firmware in ("marlin", "prusa") and state.probed and not state.levelled:
+        better = "G29 A" if printer.firmware == "prusa" else "M420 S1"
+        raise InputError(
+            f"{where}: probes the bed (G29), but homing (G28) switches levelling off; write "
+            f"{better} after both"
+        )
     if state.retracted:
         raise InputError(f"{where}: draws filament back (G10) and does not push it back (G11)")
 

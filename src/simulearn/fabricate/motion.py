@@ -40,6 +40,7 @@ def move(command: Command, state: State, printer: Printer, where: str) -> None:
             raise InputError(f"{where}: F{command.words['F']} is no speed")
     _homed(command, state, printer, where)
     _on_bed(command, state, printer, where)
+    _over_print(before, state, where)
     value = command.number("E", where)
     if value is not None:
         _feed(value, _length(command, before, state), state, printer, where)
@@ -108,6 +109,21 @@ def _on_bed(command: Command, state: State, printer: Printer, where: str) -> Non
         raise InputError(f"{text}, which is round; {printer.name} reaches {most:g} mm")
     if bed.shape_unclear:
         raise InputError(f"{text}; {bed.ask_shape()}")
+
+
+def _over_print(before: dict[str, float | None], state: State, where: str) -> None:
+    """Make sure that the nozzle does not come down where the print stands."""
+    box, z = state.print, state.at["Z"]
+    heights = [height for height in (before["Z"], z) if height is not None]
+    if box is None or not heights or min(heights) >= box.top - ROUNDING:
+        return
+    places = [(at["X"], at["Y"]) for at in (before, state.at)]
+    known = [(x, y) for x, y in places if x is not None and y is not None]
+    if len(known) < len(places) or box.meets(*known):
+        raise InputError(
+            f"{where}: leads down to Z {min(heights):g} mm where the print stands, which is "
+            f"{box.top:g} mm high"
+        )
 
 
 def _length(command: Command, before: dict[str, float | None], state: State) -> float | None:

@@ -74,6 +74,14 @@ class Bed(_Table):
             raise ValueError("a round bed is as deep as it is wide; both are its diameter")
         return self
 
+    @field_validator("excluded")
+    @classmethod
+    def _areas(cls, given: list[_Box]) -> list[_Box]:
+        for k, ((x0, y0), (x1, y1)) in enumerate(given):
+            if x0 == x1 or y0 == y1:
+                raise ValueError(f"zone {k} has no area; give two corners, [[x, y], [x, y]]")
+        return given
+
     @property
     def round(self) -> bool:
         """Whether it is known to be round."""

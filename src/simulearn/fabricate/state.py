@@ -2,8 +2,24 @@
 
 from dataclasses import dataclass, field
 
+import shapely
+
 CLEAR = 2.0  # mm above the bed from which a nozzle that heats up does no harm
 EVERYTHING = "XYZ"
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box that stands on the bed: two corners (x, y), and its height, mm."""
+
+    low: tuple[float, float]
+    high: tuple[float, float]
+    top: float
+
+    def meets(self, begin: tuple[float, float], end: tuple[float, float]) -> bool:
+        """Whether a line on the bed meets it."""
+        line = shapely.linestrings([begin, end])
+        return bool(shapely.intersects(shapely.box(*self.low, *self.high), line))
 
 
 @dataclass
@@ -22,9 +38,14 @@ class State:
         back_known: whether that is all.
         retracted: whether G10 has drawn filament back.
         target: of the nozzle, C.
+        bed: target of the bed, C.
         hot: the nozzle has at least this temperature, C.
         cold: below this temperature it moves no filament, C.
+        probed: whether the bed has been probed.
+        levelled: whether what was probed is made use of.
         macro: the last macro, whose work is not known.
+        at_end: axes that homing has left at their switches, of which GPX does not know the places.
+        print: what stands on the bed, in the end code; None before the print.
     """
 
     at: dict[str, float | None] = field(default_factory=lambda: dict.fromkeys(EVERYTHING))
@@ -38,9 +59,19 @@ class State:
     back_known: bool = True
     retracted: bool = False
     target: float | None = 0.0
+    bed: float | None = 0.0
     hot: float | None = 0.0
     cold: float = 170.0
+    probed: bool = False
+    levelled: bool = False
     macro: str = ""
+    at_end: frozenset[str] = frozenset()
+    print: Box | None = None
+
+    @property
+    def heats(self) -> bool:
+        """Whether a heater is known to be on."""
+        return bool(self.target) or bool(self.bed)
 
     @property
     def clear(self) -> bool:
@@ -78,6 +109,6 @@ class State:
         self.at = dict.fromkeys(self.at)
         self.homed = dict.fromkeys(self.at)
         self.least_z = self.relative = self.e_own = self.e_last = None
-        self.e = self.target = self.hot = None
-        self.back_known = self.retracted = False
+        self.e = self.target = self.bed = self.hot = None
+        self.back_known = self.retracted = self.probed = False
         self.macro = macro

@@ -17,6 +17,7 @@ RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
 UNLOADS = 20.01  # mm of filament; more comes out of the melt zone
 JUMP = 50.0  # mm of filament in one move without a way (Klipper: max_extrude_only_distance)
 WIDEST = 4.0  # times the nozzle squared: section of a bead (Klipper: max_extrude_cross_section)
+PURGE = 1.5  # mm of filament on a millimetre of a purge line
 TINY = 1e-6
 
 
@@ -155,15 +156,23 @@ class Mover:
             if fed > JUMP:
                 self.danger("e-jump", f"{fed:.0f} mm of filament in one place")
             return
-        if fed > 0 and fed * self.area / away > WIDEST * self.limits.nozzle**2:
-            tiny = fed * self.area <= WIDEST * self.limits.nozzle**2 * self.limits.nozzle
-            if not tiny:
-                self.danger("e-jump", f"{fed:.1f} mm of filament on {away:.1f} mm")
+        self.section(fed, away)
         if self.printing and s.target != 0:
             if fed > 0:
                 self.bead(fed, z)
             elif fed < -TINY:
                 self.danger("e-jump", f"{-fed:.2f} mm of filament are drawn back along a bead")
+
+    def section(self, fed: float, away: float) -> None:
+        """Check that a bead is not thicker than the nozzle can lay; a purge may be."""
+        widest = WIDEST * self.limits.nozzle**2
+        if self.firmware == "klipper" or self.printing:
+            # Klipper lets a tiny amount pass.
+            thick = fed * self.area > widest * max(away, self.limits.nozzle)
+        else:
+            thick = fed > PURGE * away
+        if thick:
+            self.danger("e-jump", f"{fed:.1f} mm of filament on {away:.1f} mm")
 
     def bead(self, fed: float, z: Any) -> None:
         x, y = self.state.place["X"], self.state.place["Y"]
