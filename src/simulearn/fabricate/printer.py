@@ -226,6 +226,11 @@ class Printer(_Table):
     code: Code
 
     @property
+    def sets_limits(self) -> bool:
+        """Whether the file sets acceleration and corner speed (GPX passes none to Sailfish)."""
+        return self.code.limits and self.firmware != "sailfish"
+
+    @property
     def one_acceleration(self) -> bool:
         """Whether the firmware has one acceleration for prints and travels: that of prints."""
         return self.firmware == "klipper"
