@@ -16,7 +16,7 @@ KERNELS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/.pytest_cache/jax JAX_PERSISTENT_
 CORE := tests/material tests/grid tests/simulate tests/fea/test_trial.py tests/mechanics/test_poses.py \
 	tests/mechanics/test_topology.py tests/test_native.py tests/test_api.py
 
-.PHONY: demo test test-core packages lint bench pictures clean
+.PHONY: demo test test-core packages readers docs lint bench pictures clean
 
 demo: $(VENV)/ready
 	mkdir -p out
@@ -33,6 +33,14 @@ test-core: $(VENV)/ready
 packages: $(VENV)/ready
 	SIMULEARN_REQUIRE=uv SIMULEARN_PYTHONS="$(shell .ci/pythons 3.11 3.12 3.13)" \
 		$(BIN)/python -m pytest -n $(PROCESSES) --dist worksteal tests/packages
+
+# Programs that read print files, for the tests that ask them; without their servers.
+readers: .venv-readers/ready
+
+# The documentation site, in site/.
+docs: $(VENV)/ready .venv-docs/ready
+	$(BIN)/python docs/site/stage.py build/docs
+	.venv-docs/bin/zensical build --strict --clean
 
 lint: $(VENV)/ready
 	$(BIN)/ruff check .
@@ -60,6 +68,7 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/drawings.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/hops.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/exports.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/print_readers.py
 
 # The pictures of README.md and docs/studio.md.
 pictures: $(VENV)/ready
@@ -67,9 +76,10 @@ pictures: $(VENV)/ready
 	$(BIN)/simulearn simulate examples/twist.json -o docs/pictures/twist.gif
 	$(BIN)/simulearn simulate examples/random.json -o docs/pictures/random.png
 	$(BIN)/python benchmarks/studio_pictures.py
+	$(BIN)/python docs/site/tour.py
 
 clean:
-	rm -rf .venv .venv-* out
+	rm -rf .venv .venv-* out build site
 
 $(VENV)/ready: pyproject.toml requirements.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -78,3 +88,14 @@ $(VENV)/ready: pyproject.toml requirements.lock
 	$(INSTALL) -r requirements.lock
 	$(INSTALL) --no-deps -e .
 	touch $(VENV)/ready
+
+.venv-readers/ready: tests/fabricate/readers/requirements.txt
+	$(call environment,.venv-readers) --no-deps -r $<
+	touch $@
+
+.venv-docs/ready: docs/site/requirements.lock
+	$(call environment,.venv-docs) -r $<
+	touch $@
+
+# Makes an environment, and begins the command that installs into it.
+environment = $(PYTHON) -m venv $(1) && $(if $(UV),$(UV) pip install --quiet --python $(1)/bin/python,$(1)/bin/python -m pip install --quiet --disable-pip-version-check)

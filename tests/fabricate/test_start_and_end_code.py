@@ -171,6 +171,13 @@ def test_heaters_are_off_at_the_end():
     assert lines_of(job_of("ender-3", end="M109 R50\nM104 S0"))[-1] == "M104 S0"
 
 
+def test_the_nozzle_does_not_rub_on_the_bed():
+    assert "moves across the bed with the nozzle on it" in refusal("ender-3", "G28\nG0 X5\nG0 Z5")
+    assert "line 3" in refusal("ender-3", "G28\nG0 Z0.1\nG0 Y5")
+    assert job_of("ender-3", "G28\nG0 X5 Z5\nG0 Y5").gcode
+    assert job_of("ender-3", "G28\nG91\nG0 Z5\nG90\nG0 Y5").gcode
+
+
 # Filament
 
 
@@ -181,6 +188,8 @@ def test_e_in_the_end_code_is_relative_and_nothing_is_unloaded():
     # What lies drawn back at the end is pushed back before the next print.
     assert "G1 E7 F2700" in text
     assert "draws back 23 mm of filament in all" in refusal("ender-3", end="G1 E-9\nG1 E-9")
+    assert "does not push it back (G11)" in refusal("ender-3", end="G10")
+    assert "does not push it back (G11)" in refusal("ender-3", READY + "G10")
     assert "unloads the filament" in refusal("prusa-mk4", end="M702")
     assert "unloads the filament" in refusal("bambu-x1", end="M620 S255")
     assert "unloads the filament" in refusal("bambu-x1", end="T255")

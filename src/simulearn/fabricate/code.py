@@ -14,7 +14,6 @@ from simulearn.fabricate import heat
 from simulearn.fabricate.commands import Command, commands
 from simulearn.fabricate.firmware import DIALECTS
 from simulearn.fabricate.machine import Machine
-from simulearn.fabricate.motion import reach
 from simulearn.fabricate.moves import Moves
 from simulearn.fabricate.placeholders import fill, fill_comment
 from simulearn.fabricate.printer import Printer
@@ -103,7 +102,9 @@ def end_code(printer: Printer, settings: Settings, frame: Frame) -> Script:
         print=Box(frame.low, frame.high, frame.top),
         cold=heat.cold_limit(printer),
     )
-    return _script(printer, settings, frame, "end", state)
+    script = _script(printer, settings, frame, "end", state)
+    _pushed_back(script.state, f"{printer.name}: code.end")
+    return script
 
 
 def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Message]:
@@ -117,8 +118,7 @@ def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Me
 
 def lift(settings: Settings, printer: Printer) -> str:
     """Return the move that takes the nozzle off the bed, in absolute coordinates."""
-    height = min(LIFT, reach(printer)["Z"][1])
-    return f"G0 Z{height:g} F{settings.speed_z:g}"
+    return f"G0 Z{min(LIFT, printer.bed.height):g} F{settings.speed_z:g}"
 
 
 def _script(printer: Printer, settings: Settings, frame: Frame, which: str, state: State) -> Script:
@@ -226,8 +226,16 @@ def _ready(state: State, printer: Printer) -> None:
             f"{where}: probes the bed (G29), but homing (G28) switches levelling off; write "
             f"{better} after both"
         )
+    _pushed_back(state, where)
+
+
+def _pushed_back(state: State, where: str) -> None:
+    """Make sure that the next moves do not begin with filament that G10 has drawn back."""
     if state.retracted:
-        raise InputError(f"{where}: draws filament back (G10) and does not push it back (G11)")
+        raise InputError(
+            f"{where}: draws filament back (G10) and does not push it back (G11); write G1 E-2, "
+            f"which is followed, or both"
+        )
 
 
 def _ascii(code: str, where: str) -> None:

@@ -118,6 +118,7 @@ class Machine:
             self._over_print(command, where, "G28 X Y")
             self._touches(command, where)
             self.state.least_z = 0.0
+            self.state.on_bed = True
         self.state.time_passes()
         for axis in axes:
             self.state.at[axis] = None

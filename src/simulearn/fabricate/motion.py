@@ -8,6 +8,7 @@ from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.state import State
 
 ROUNDING = 1e-6
+RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
 MOST_BACK = 20.0  # mm of filament; further back it leaves the melt zone and is unloaded
 MOST_AT_ONCE = 50.0  # mm of filament without a move; Klipper refuses more
 WIDEST = 4.0  # times the nozzle squared: section of a bead above which Klipper refuses
@@ -42,6 +43,11 @@ def move(command: Command, state: State, printer: Printer, where: str) -> None:
     _on_bed(command, state, printer, where)
     _over_print(before, state, where)
     value = command.number("E", where)
+    if state.on_bed and value is None and (command.words.keys() & {"X", "Y"}):
+        raise InputError(
+            f"{where}: moves across the bed with the nozzle on it, as far as is known after "
+            f"homing; write a move in Z before it, as G0 Z5"
+        )
     if value is not None:
         _feed(value, _length(command, before, state), state, printer, where)
 
@@ -67,6 +73,7 @@ def _axis(axis: str, value: float, state: State, printer: Printer, where: str) -
     if state.relative and before is None:
         if axis == "Z" and value >= 0:  # up is safe from anywhere
             state.least_z = None if state.least_z is None else state.least_z + value
+            state.on_bed = state.on_bed and value < RUBS
             return
         raise InputError(
             f"{where}: {axis}{value:g} is relative to a place that is not known here; "
@@ -81,6 +88,7 @@ def _axis(axis: str, value: float, state: State, printer: Printer, where: str) -
     state.at[axis] = value
     if axis == "Z":
         state.least_z = value
+        state.on_bed = value < RUBS
 
 
 def _homed(command: Command, state: State, printer: Printer, where: str) -> None:

@@ -29,6 +29,7 @@ class State:
     Attributes:
         at: place of the nozzle by axis, mm.
         least_z: the nozzle is at least so high, mm.
+        on_bed: whether homing has left the nozzle on the bed, as far as is known.
         homed: by axis, whether the machine knows where it stands.
         relative: whether X, Y and Z count from the last place.
         e_own: what M82 or M83 last said: whether E counts from its last value.
@@ -50,6 +51,7 @@ class State:
 
     at: dict[str, float | None] = field(default_factory=lambda: dict.fromkeys(EVERYTHING))
     least_z: float | None = None
+    on_bed: bool = False
     homed: dict[str, bool | None] = field(default_factory=lambda: dict.fromkeys(EVERYTHING, False))
     relative: bool | None = False
     e_own: bool | None = False
@@ -97,7 +99,7 @@ class State:
     def lose_place(self) -> None:
         """Forget where the nozzle is: it went to a place of the machine's own choice."""
         self.at = dict.fromkeys(self.at)
-        self.least_z = 0.0
+        self.least_z, self.on_bed = 0.0, False
 
     def time_passes(self) -> None:
         """Take a nozzle that was told to cool for as cold as its target."""
@@ -110,5 +112,5 @@ class State:
         self.homed = dict.fromkeys(self.at)
         self.least_z = self.relative = self.e_own = self.e_last = None
         self.e = self.target = self.bed = self.hot = None
-        self.back_known = self.retracted = self.probed = False
+        self.back_known = self.retracted = self.probed = self.on_bed = False
         self.macro = macro
