@@ -26,9 +26,8 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "fabricate" / "f
 import fuzzed_profiles
 import test_fuzzed_profiles
 import test_prints_run as runs
-import test_x3g
 from virtual_printer import simulate
-from x3g import read_x3g
+from x3g import check_film, read_x3g
 
 GRIDS = ("twist", "cone", "wave")
 STEPPER = """[stepper_{axis}]
@@ -185,7 +184,7 @@ def by_gpx(words: argparse.Namespace, report: Report, jobs: dict[str, Job]) -> N
             command = [words.gpx, "-r", "-m", "r2x", str(source), str(target)]
             done = subprocess.run(command, capture_output=True, text=True, check=True)
             film = read_x3g(target.read_bytes())
-        test_x3g.check_film(film, job)
+        check_film(film, job)
         x, y, z = zip(*film.places, strict=True)
         ours = job.estimate
         rows.append(

@@ -6,13 +6,13 @@ import subprocess
 
 import numpy as np
 import pytest
-from x3g import DEFINE, HOME_HIGH, HOME_LOW, MOVE, PLACE, RECALL, read_x3g
+from x3g import DEFINE, HOME_HIGH, HOME_LOW, MOVE, PLACE, RECALL, check_film, read_x3g
 
 from requiring import required
 from simulearn.fabricate import load_printer, prepare, write_gcode
 from simulearn.grid import make
 
-MOVED = struct.pack("<B5iIBfH", MOVE, 8857, -8857, 400, -963, 0, 2000, 24, 141.42, 1600)
+MOVED = struct.pack("<B5iIBfH", MOVE, 8889, -8889, 400, -963, 0, 2000, 24, 141.42, 1600)
 HOMED = struct.pack("<BBIH", HOME_HIGH, 3, 382, 20) + struct.pack("<BBIH", HOME_LOW, 4, 136, 20)
 
 
@@ -48,17 +48,3 @@ def test_gpx_takes_the_print_without_a_warning(tmp_path):
     )
     assert done.stdout + done.stderr == ""
     check_film(read_x3g(target.read_bytes()), job)
-
-
-def check_film(film, job):
-    """Check that it homes, recalls where the axes are, and stays in the frame."""
-    assert film.axes == [("high", "XY"), ("low", "Z")]
-    assert film.commands.index(HOME_LOW) < film.commands.index(RECALL)
-    # Where the machine is was known when it was defined.
-    assert film.commands.index(PLACE) < film.commands.index(DEFINE)
-    places = np.array(film.places)
-    bed = job.printer.bed
-    assert (places.min(axis=0) >= [*bed.low, 0]).all()
-    assert (places.max(axis=0) <= [*bed.high, bed.height]).all()
-    # The retraction at the end is given again at the start.
-    assert film.fed == pytest.approx(job.estimate.filament_mm, rel=2e-3)

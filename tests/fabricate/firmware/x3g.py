@@ -6,6 +6,8 @@ Layout of the commands: MakerBot's protocol document "s3g", and what GPX's s3gdu
 import struct
 from dataclasses import dataclass, field
 
+import numpy as np
+
 # Bytes after a command's number; text ends with a zero and is counted apart.
 LENGTHS = {
     131: 7, 132: 7, 133: 4, 134: 1, 135: 5, 137: 1, 139: 24, 140: 20, 141: 5, 142: 25,
@@ -15,7 +17,7 @@ LENGTHS = {
 TEXTS = {149: 4, 153: 4}
 HOME_LOW, HOME_HIGH, PLACE, DEFINE, RECALL, MOVE = 131, 132, 139, 140, 144, 155
 # Steps a millimetre of a Replicator 2X in x, y, z, and of its filament.
-STEPS = (88.573186, 88.573186, 400.0, 96.275)
+STEPS = (88.888889, 88.888889, 400.0, 96.275202)
 
 
 @dataclass
@@ -76,3 +78,22 @@ def read_x3g(data: bytes) -> Film:
             axes = "".join(axis for k, axis in enumerate("XYZ") if body[0] & 1 << k)
             film.axes.append(("low" if number == HOME_LOW else "high", axes))
     return film
+
+
+def check_film(film, job):
+    """Check that it homes, recalls where the axes are, and stays in the frame.
+
+    Args:
+        film: of a Replicator 2X.
+        job: of which it was made.
+    """
+    assert film.axes == [("high", "XY"), ("low", "Z")]
+    assert film.commands.index(HOME_LOW) < film.commands.index(RECALL)
+    # Where the machine is was known when it was defined.
+    assert film.commands.index(PLACE) < film.commands.index(DEFINE)
+    places = np.array(film.places)
+    bed = job.printer.bed
+    assert (places.min(axis=0) >= [*bed.low, 0]).all()
+    assert (places.max(axis=0) <= [*bed.high, bed.height]).all()
+    # The retraction at the end is given again at the start.
+    assert abs(film.fed / job.estimate.filament_mm - 1) < 2e-3
