@@ -6,6 +6,7 @@ with E as the profile counts it; the end code begins at the place of the last mo
 Where a line of the start code lets a hot nozzle wait on the bed, a lift is written before it.
 """
 
+import re
 import unicodedata
 from dataclasses import dataclass, replace
 
@@ -22,6 +23,7 @@ from simulearn.fabricate.state import Box, State
 from simulearn.fabricate.toolpath import Toolpath
 from simulearn.grid import Message
 
+ZERO = re.compile(r"[A-Za-z]\s*0\d")
 LIFT = 10.0  # mm above the bed, where a nozzle heats up
 
 
@@ -186,6 +188,11 @@ def _in_dialect(command: Command, printer: Printer, where: str) -> None:
     if not dialect.lower_case and command.is_code and command.text[0].islower():
         raise InputError(
             f"{where}: {dialect.title} does not read small letters; write {command.text.upper()}"
+        )
+    if dialect.exact and command.is_code and ZERO.match(command.text):
+        raise InputError(
+            f"{where}: {dialect.title} does not know {command.text.split()[0]}; write "
+            f"{command.name}"
         )
 
 

@@ -13,6 +13,8 @@ from simulearn.fabricate.state import State
 
 COMMANDS = {"M104", "M109", "M140", "M190", "M116", "G4", "M302", "SET_HEATER_TEMPERATURE"}
 COMMANDS |= {"G10", "M568"}  # of RepRapFirmware
+PAUSES = {"M0", "M1", "M25", "M226", "PAUSE"}  # until somebody presses a button
+COMMANDS |= PAUSES
 NOZZLE = {"M104", "M109", "G10", "M568", "SET_HEATER_TEMPERATURE"}
 OOZES = 175.0  # C, above which a nozzle oozes while it waits
 BRIEF = 2.0  # s, a pause that harms nothing
@@ -35,7 +37,7 @@ def heat(command: Command, state: State, printer: Printer, where: str) -> str | 
         state.bed = state.bed if target is None else target
         if name == "M190":
             state.time_passes()
-    elif name == "M116" or (name == "G4" and _pause(command, where) >= BRIEF):
+    elif name in PAUSES or name == "M116" or (name == "G4" and _pause(command, where) >= BRIEF):
         state.time_passes()
     elif name in NOZZLE and not _other_tool(command, where):
         _nozzle(command, state, printer, where)
@@ -52,7 +54,7 @@ def waits(command: Command, state: State, printer: Printer, where: str) -> bool:
         target = 0.0 if off else target
     elif command.name == "G4":
         target = target if _pause(command, where) >= BRIEF else 0.0
-    elif command.name != "M116":
+    elif command.name != "M116" and command.name not in PAUSES:
         return False
     return target > OOZES
 
@@ -82,8 +84,10 @@ def _target(command: Command, printer: Printer, where: str) -> float | None:
     if command.name == "SET_HEATER_TEMPERATURE":
         return command.number("TARGET", where) or 0.0
     target = command.number("S", where)
-    if printer.firmware == "klipper":  # it reads no R, and no number is zero
-        return target or 0.0
+    if printer.firmware == "klipper":  # it reads no R, and takes no number for zero
+        if target is None:
+            raise InputError(f"{where}: {command.name} has no S, which Klipper takes for 0 C")
+        return target
     return target if target is not None else command.number("R", where)
 
 

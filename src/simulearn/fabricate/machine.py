@@ -19,8 +19,8 @@ from simulearn.grid import Message
 SHOWN = ("M117", "M118")  # their text is shown, not done
 # These move the nozzle to a place of their own choice.
 WANDERS = {"G12", "G27", "G29", "G30", "G32", "G33", "G34", "G35", "G38", "G80", "G380"}
-WANDERS |= {"M48", "M125", "M600", "M701"}
-PROBES = WANDERS - {"G12", "G27", "M125", "M600", "M701"}
+WANDERS |= {"M48", "M125", "M701"}
+PROBES = WANDERS - {"G12", "G27", "M125", "M701"}
 KLIPPER_WANDERS = {"BED_MESH_CALIBRATE", "QUAD_GANTRY_LEVEL", "Z_TILT_ADJUST", "PROBE"}
 KLIPPER_WANDERS |= {"SCREWS_TILT_CALCULATE", "BED_TILT_CALIBRATE"}
 # Commands of Klipper's own that change nothing of the state.

@@ -11,6 +11,7 @@ ROUNDING = 1e-6
 RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
 MOST_BACK = 20.0  # mm of filament; further back it leaves the melt zone and is unloaded
 MOST_AT_ONCE = 50.0  # mm of filament without a move; Klipper refuses more
+MOST_LEFT = 1.0  # mm of filament that end code may feed beyond what is drawn back
 WIDEST = 4.0  # times the nozzle squared: section of a bead above which Klipper refuses
 NOZZLE = 0.4  # mm, where a profile does not say
 
@@ -95,12 +96,19 @@ def _homed(command: Command, state: State, printer: Printer, where: str) -> None
     for axis in "XYZ":
         if not command.words.get(axis) or state.homed[axis] is not False:
             continue
-        if axis == "Z" and state.relative and printer.firmware != "klipper":
+        if axis == "Z" and state.relative and _rises(command, printer):
             continue  # up before homing
         hint = "home it first (G28)"
         if printer.firmware == "sailfish":
             hint = "write M132 X Y Z A B after homing"
         raise InputError(f"{where}: {axis} moves before the machine knows where it is; {hint}")
+
+
+def _rises(command: Command, printer: Printer) -> bool:
+    """Return whether the firmware lifts the nozzle before homing."""
+    if printer.firmware == "reprap":
+        return "H" in command.words
+    return printer.firmware != "klipper"
 
 
 def _on_bed(command: Command, state: State, printer: Printer, where: str) -> None:
@@ -172,6 +180,11 @@ def _feed(value: float, length: float | None, state: State, printer: Printer, wh
         raise InputError(
             f"{where}: moves filament before the nozzle is hot; write M109 S{{temperature}} "
             f"before it"
+        )
+    if state.print is not None and fed > state.back + MOST_LEFT:
+        raise InputError(
+            f"{where}: feeds {fed:g} mm of filament after the print, and the heaters are off; "
+            f"leave it out"
         )
     state.back = max(0.0, state.back - fed)
     if state.back > MOST_BACK:
