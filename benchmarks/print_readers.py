@@ -49,7 +49,8 @@ def main() -> None:
     report.say(
         "The library's cone on each printer, read by "
         + ", ".join(line.replace("==", " ") for line in lines if line.split("==")[0] in named)
-        + ". All numbers but the first two columns are theirs; OctoPrint knows no accelerations."
+        + ". The first two columns are ours, the others theirs. OctoPrint knows no accelerations; "
+        "it counts what the start code feeds, and how high."
     )
     rows = []
     for name, job in jobs.items():

@@ -4,7 +4,6 @@ import runpy
 import warnings
 from pathlib import Path
 
-import jax
 import nbformat
 import pytest
 
@@ -43,13 +42,10 @@ def test_a_notebook_is_made_of_its_script(script: Path) -> None:
 
 @pytest.fixture
 def small(monkeypatch, tmp_path):
-    """Run in a folder of its own, at a small size, without compiling for speed."""
+    """Run in a folder of its own, at a small size."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("SIMULEARN_SMALL", "1")
-    before = jax.config.read("jax_disable_most_optimizations")
-    jax.config.update("jax_disable_most_optimizations", True)
-    yield tmp_path / "out"
-    jax.config.update("jax_disable_most_optimizations", before)
+    return tmp_path / "out"
 
 
 EXPECTED = {  # example -> a file that it writes, words that it prints

@@ -9,7 +9,15 @@ from importlib import import_module
 FOLDER = "reference/python"
 # Page -> module whose `__all__` counts, or names where several modules make one page.
 PAGES: dict[str, str | list[str]] = {
-    "simulearn": "simulearn",
+    "simulearn": [
+        "simulearn.simulate.calls.simulate",
+        "simulearn.simulate.calls.validate",
+        "simulearn.simulate.calls.warm",
+        "simulearn.errors.InputError",
+        "simulearn.errors.ComputationError",
+        "simulearn.errors.CancelledError",
+        "simulearn.errors.Message",
+    ],
     "grid": "simulearn.grid",
     "material": "simulearn.material",
     "simulate": "simulearn.simulate",
@@ -58,11 +66,33 @@ def _page(name: str) -> str:
     shown = PAGES[name]
     module = "simulearn" if name == "simulearn" else f"simulearn.{name}"
     names = [f"{shown}.{one}" for one in _public(shown)] if isinstance(shown, str) else shown
-    parts = [
+    title = (
         f"# {module}\n\n::: {module}\n    options: {{members: false, show_root_heading: false}}\n"
-    ]
-    parts += [f"\n::: {one}\n" for one in names]
-    return "".join(parts)
+    )
+    elsewhere = _elsewhere() if name == "simulearn" else ""
+    return title + elsewhere + "".join(_directive(one) for one in names)
+
+
+def _directive(name: str) -> str:
+    """Return what shows a function or class, under the name by which it is imported."""
+    short = name.rpartition(".")[2]
+    if name.startswith(("simulearn.simulate.calls.", "simulearn.errors.")):
+        return f"\n::: {name}\n    options: {{heading: simulearn.{short}, toc_label: {short}}}\n"
+    return f"\n::: {name}\n    options: {{toc_label: {short}}}\n"
+
+
+def _elsewhere() -> str:
+    """Return where what `simulearn` offers besides is described."""
+    import simulearn
+
+    rows = []
+    for name in simulearn.__all__:
+        page = simulearn.PLACES.get(name, "").removeprefix("simulearn.")
+        if page in PAGES and callable(getattr(simulearn, name)):
+            rows.append(f"| `simulearn.{name}` | [simulearn.{page}]({page}.md) |\n")
+    return "\nFrom other modules come:\n\n| name | described with |\n| --- | --- |\n" + "".join(
+        rows
+    )
 
 
 def _public(module: str) -> list[str]:

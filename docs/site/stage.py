@@ -17,6 +17,7 @@ from pathlib import Path, PurePosixPath
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 HERE = Path(__file__).resolve().parent
+ICON = ROOT / "src" / "simulearn" / "studio" / "page" / "icon.svg"
 PAGES = {"README.md": "index.md", "CHANGELOG.md": "changelog.md"}  # pages outside docs/
 MEASURED = "Each page is written by a command of the repository; `make bench` runs them all."
 COPIES = "files"  # folder of the site for files outside docs/
@@ -118,7 +119,7 @@ def stage(folder: Path, generated: dict[str, str]) -> None:
         for path in sorted(DOCS.rglob("*"))
         if path.is_file() and path.suffix != ".md" and HERE not in path.parents
     }
-    copies["site.css"] = HERE / "site.css"
+    copies |= {"site.css": HERE / "site.css", "icon.svg": ICON}
     texts = dict(generated)
     for page, source in pages().items():
         texts[page] = staged(source.read_text(encoding="utf-8"), page, source, copies)

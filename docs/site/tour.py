@@ -8,17 +8,15 @@ Files that the page shows (```json title="NAME") are written first; then every l
 
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from PIL import Image
-
 DOCS = Path(__file__).resolve().parents[1]
 PAGE = DOCS / "tour.md"
 PICTURES = DOCS / "pictures" / "tour"
-COLOURS = 128  # of a picture, which has few tones and should load fast
 
 
 def files(text: str) -> dict[str, str]:
@@ -47,17 +45,7 @@ def main() -> None:
         PICTURES.mkdir(parents=True, exist_ok=True)
         for picture in re.findall(r'"pictures/tour/([^"]+)"', text):
             (made,) = folder.rglob(picture)
-            keep(made, PICTURES / picture)
-
-
-def keep(made: Path, place: Path) -> None:
-    """Copy a picture; stills get a palette of few colours."""
-    if made.suffix == ".gif":
-        place.write_bytes(made.read_bytes())
-        return
-    with Image.open(made) as picture:
-        few = picture.convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE)
-    few.save(place, optimize=True)
+            shutil.copyfile(made, PICTURES / picture)
 
 
 if __name__ == "__main__":

@@ -73,12 +73,11 @@ def read(text):
     move = np.isin(command, ["G0", "G1"])
     places = np.stack([_held(np.where(move, values[:, c], np.nan)) for c in range(3)], axis=1)
     speed = _held(np.where(move, values[:, 4], np.nan))
-    relative = np.nonzero(command == "M83")[0]
-    if len(relative):
-        fed = np.where(move, np.nan_to_num(values[:, 3]), 0.0)
-    else:
-        counted = _held(np.where(move | (command == "G92"), values[:, 3], np.nan))
-        fed = np.where(move, np.diff(np.nan_to_num(counted), prepend=0.0), 0.0)
+    relative = _held(np.select([command == "M83", command == "M82"], [1.0, 0.0], np.nan)) == 1
+    counts = (move & ~relative) | (command == "G92")
+    counted = np.nan_to_num(_held(np.where(counts, values[:, 3], np.nan)))
+    fed = np.where(relative, np.nan_to_num(values[:, 3]), np.diff(counted, prepend=0.0))
+    fed = np.where(move, fed, 0.0)
     keep = command != ""
     return Read(
         command[keep],

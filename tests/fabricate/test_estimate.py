@@ -16,6 +16,8 @@ from simulearn.fabricate.short_strokes import mean_speeds
 from simulearn.grid import make
 from simulearn.material import load_material
 
+SMALL = make("twist", (1, 1), 50.0)
+
 
 def time_of(length, fastest, acceleration, corner=None):
     n = len(length)
@@ -103,7 +105,17 @@ def test_a_print_accelerates_as_the_material_asks_or_as_the_machine_can(
     printer = load_printer(name)
     settings, _ = settings_of(load_material("pla-hot-water"), printer)
     assert (settings.acceleration, settings.corner_speed) == (acceleration, corner_speed)
-    assert settings.acceleration_travel == printer.motion.acceleration_travel
+    travel = acceleration if name == "voron" else printer.motion.acceleration_travel
+    assert settings.acceleration_travel == travel  # Klipper has one for both
+
+
+def test_a_printer_that_is_set_no_limits_prints_with_its_own_and_that_is_warned_about():
+    printer = load_printer("bambu-x1")
+    code = printer.code.model_copy(update={"limits": False})
+    job = prepare([SMALL], printer.model_copy(update={"code": code}))
+    assert job.settings.acceleration == printer.motion.acceleration == 5000.0
+    (message,) = (w.message for w in job.warnings if w.code == "short-strokes")
+    assert "acceleration 5000 instead of 1000" in message
 
 
 def test_a_profile_that_changes_the_acceleration_is_warned_about():
@@ -122,9 +134,6 @@ def test_filament_in_three_units_and_heating_apart():
     assert needs.filament_mm == pytest.approx(1000 * needs.filament_cm3 / (pi * 1.75**2 / 4))
     assert needs.heating_seconds == pytest.approx((205 - 20) / 2.0)
     assert needs.seconds == pytest.approx(job.durations.sum())
-
-
-SMALL = make("twist", (1, 1), 50.0)
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import shapely
 from reading import read
 
 from simulearn.fabricate import load_printer, prepare
+from simulearn.fabricate.motion import reach
 from simulearn.fabricate.regions import _cuts
 from simulearn.grid import Grid, Rules, draw_valid, library, make, outline
 from simulearn.material import load_material
@@ -32,7 +33,8 @@ def check_file(job):
     """Check what is in the file alone: heat, reach, E, volume, travels, layers."""
     file = read(job.gcode)
     bed, settings = job.printer.bed, job.settings
-    fed, prints = file.fed, file.prints
+    # What the start code feeds is not of the print.
+    fed, prints = np.where(file.layer >= 0, file.fed, 0.0), file.prints & (file.layer >= 0)
     assert np.isfinite(fed).all()
 
     # Nothing is extruded cold.
@@ -47,11 +49,12 @@ def check_file(job):
     # Every place is within reach, the whole width of a bead on the bed.
     known = ~np.isnan(file.places).any(axis=1)
     places = file.places[known]
-    low, high = np.array([*bed.low, 0.0]), np.array([*bed.high, bed.height])
+    low, high = np.transpose(list(reach(job.printer).values()))
     assert (places >= low).all()
     assert (places <= high).all()
-    assert (file.places[prints, :2] >= low[:2] + LINE / 2).all()
-    assert (file.places[prints, :2] <= high[:2] - LINE / 2).all()
+    low, high = bed.low, bed.high
+    assert (file.places[prints, :2] >= np.add(low, LINE / 2)).all()
+    assert (file.places[prints, :2] <= np.subtract(high, LINE / 2)).all()
 
     # Sixteen layers; the nozzle prints at their heights only.
     tops = np.array([layer.z for layer in job.path.layers])
@@ -59,7 +62,7 @@ def check_file(job):
     np.testing.assert_allclose(file.places[prints, 2], tops[file.layer[prints]], atol=5e-4)
 
     # E rises along each bead: what is drawn back is drawn back between beads.
-    inside = prints | ((file.fed != 0) & (file.moved > 0))
+    inside = prints | ((fed != 0) & (file.moved > 0))
     assert (fed[inside] > 0).all()
 
     # Volume is path times section, bead by bead.

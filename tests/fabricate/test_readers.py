@@ -8,6 +8,7 @@ import json
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 from reading import read
 from several import FIRMWARE, GRIDS, job_of
@@ -73,14 +74,18 @@ def check_moonraker(says, job):
 def check_octoprint(says, job):
     # It knows no accelerations, so its time is a lower limit.
     assert 0.4 * job.estimate.seconds < 60 * says["total_time"] < 1.02 * job.estimate.seconds
-    # It counts what is fed before the print, too.
-    before = read(job.gcode.partition(";LAYER_COUNT")[0]).fed.sum()
+    # It counts what the start code feeds and where, too.
+    start = read(job.gcode.partition(";LAYER_COUNT")[0])
     (length,) = says["extrusion_length"]
-    assert length == pytest.approx(job.estimate.filament_mm + before, abs=0.05)
-    area, (low, high) = says["printing_area"], job.path.bounds
+    assert length == pytest.approx(job.estimate.filament_mm + start.fed.sum(), abs=0.05)
+    purge = np.flatnonzero(start.prints)
+    purged = start.places[np.union1d(purge - 1, purge)]
+    places = np.concatenate([purged[:, :2], job.path.bounds])
+    area, low, high = says["printing_area"], np.nanmin(places, axis=0), np.nanmax(places, axis=0)
     assert [area["minX"], area["minY"]] == pytest.approx(low.tolist(), abs=0.001)
     assert [area["maxX"], area["maxY"]] == pytest.approx(high.tolist(), abs=0.001)
-    assert area["maxZ"] == pytest.approx(job.path.layers[-1].z)
+    heights = [*purged[:, 2], job.path.layers[-1].z]
+    assert area["maxZ"] == pytest.approx(np.nanmax(heights))
 
 
 def check_prusa(says, job):

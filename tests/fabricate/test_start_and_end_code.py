@@ -143,6 +143,41 @@ def test_one_command_a_line_in_capitals():
     assert "reads 95" in refusal("ender-3", "G28\nM118 " + "x" * 95)
 
 
+def test_the_end_code_keeps_off_the_print():
+    assert "G28 leads down to the bed, on which the print stands; write G28 X Y" in refusal(
+        "ender-3", end="G28"
+    )
+    assert "G28" in job_of("ender-3", end="G28 X Y").gcode
+    delta = {"width": 220.0, "depth": 220.0, "origin": "centre", "shape": "round"}
+    assert job_of("ender-3", end="G28", bed=delta).gcode  # homes upwards
+    assert "G29 leads down to the bed" in refusal("ender-3", end="G29")
+    assert "leads down to Z 1 mm where the print stands" in refusal("ender-3", end="G0 Z1")
+    assert "which is 4 mm high" in refusal("ender-3", end="G91\nG0 Z-12")
+    assert job_of("ender-3", end="G0 X0 Y0\nG0 Z1").gcode  # beside it
+    assert "leads down" in refusal("ender-3", end="G0 X0 Y0\nG0 Z1\nG0 X220 Y220")
+
+
+def test_what_is_probed_is_used():
+    assert "write G29 A after both" in refusal("prusa-mk4", "G28\nG29 P1\nG0 Z5")
+    assert "write M420 S1 after both" in refusal("ender-3", "G29\nG28\nG0 Z5")
+    assert job_of("ender-3", "G29\nG28\nM420 S1\nG0 Z5").gcode
+    assert job_of("ender-3", "G28\nG29\nG0 Z5").gcode
+
+
+def test_heaters_are_off_at_the_end():
+    lines = lines_of(job_of("ender-3", end="M104 S60\nM84"))
+    assert lines[-2:] == ["M104 S0", "M140 S0"]
+    assert lines_of(job_of("ender-3", end="M84"))[-1] == "M84"
+    assert lines_of(job_of("ender-3", end="M109 R50\nM104 S0"))[-1] == "M104 S0"
+
+
+def test_the_nozzle_does_not_rub_on_the_bed():
+    assert "moves across the bed with the nozzle on it" in refusal("ender-3", "G28\nG0 X5\nG0 Z5")
+    assert "line 3" in refusal("ender-3", "G28\nG0 Z0.1\nG0 Y5")
+    assert job_of("ender-3", "G28\nG0 X5 Z5\nG0 Y5").gcode
+    assert job_of("ender-3", "G28\nG91\nG0 Z5\nG90\nG0 Y5").gcode
+
+
 # Filament
 
 
@@ -153,6 +188,8 @@ def test_e_in_the_end_code_is_relative_and_nothing_is_unloaded():
     # What lies drawn back at the end is pushed back before the next print.
     assert "G1 E7 F2700" in text
     assert "draws back 23 mm of filament in all" in refusal("ender-3", end="G1 E-9\nG1 E-9")
+    assert "does not push it back (G11)" in refusal("ender-3", end="G10")
+    assert "does not push it back (G11)" in refusal("ender-3", READY + "G10")
     assert "unloads the filament" in refusal("prusa-mk4", end="M702")
     assert "unloads the filament" in refusal("bambu-x1", end="M620 S255")
     assert "unloads the filament" in refusal("bambu-x1", end="T255")

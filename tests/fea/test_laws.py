@@ -25,8 +25,8 @@ def test_stress_and_moduli_are_derivatives_of_the_energy(law: ConstitutiveLaw) -
 
     points = np.eye(3) + 0.15 * np.random.default_rng(0).normal(size=(20, 3, 3))
     P, S, A = checks.respond_at(law, points)
-    slope = double_precision(jax.vmap(jax.grad(density)))
-    curvature = double_precision(jax.vmap(jax.hessian(density)))
+    slope = double_precision(jax.jit(jax.vmap(jax.grad(density))))
+    curvature = double_precision(jax.jit(jax.vmap(jax.hessian(density))))
     np.testing.assert_allclose(P, slope(points), atol=1e-13)
     np.testing.assert_allclose(A.transpose(0, 1, 3, 2, 4), curvature(points), atol=1e-12)
     np.testing.assert_allclose(points @ S, P, atol=1e-13)

@@ -96,11 +96,6 @@ def test_the_dome_leaves_its_balance_and_says_so(dome: Trial) -> None:
     assert max(away[11], turned[11]) > 1
 
 
-def test_the_path_is_the_same_every_time(dome: Trial) -> None:
-    again = simulate_grid(make("dome"), PLA)
-    np.testing.assert_array_equal(again.joints, dome.joints)
-
-
 def test_both_sides_of_a_balance_are_mirror_images() -> None:
     """A straight column under its own growth between two held ends buckles to either side."""
     material = ladder.elastic(2.2, 0.0, 7.2, 4.0)
@@ -147,12 +142,12 @@ def test_a_long_strip_hangs_down_before_anything_is_released() -> None:
     assert state.u[:, 2].min() < -200
 
 
-def test_calls_of_several_threads_give_the_same_answers(snapping: Trial) -> None:
-    grids = [make("saddle"), drop_beams(make("wave"), [0, 5]), make("cone", (1, 2)), SNAPPING]
+def test_calls_of_several_threads_give_the_same_answers(dome: Trial) -> None:
+    grids = [make("saddle"), drop_beams(make("wave"), [0, 5]), make("cone", (1, 2)), make("dome")]
     alone = [simulate_grid(grid, PLA).displacements for grid in grids[:-1]]
     with ThreadPoolExecutor(4) as pool:
         together = list(pool.map(lambda grid: simulate_grid(grid, PLA).displacements, grids))
-    for one, other in zip([*alone, snapping.displacements], together, strict=True):
+    for one, other in zip([*alone, dome.displacements], together, strict=True):
         np.testing.assert_array_equal(one, other)
 
 

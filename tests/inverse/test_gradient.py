@@ -28,7 +28,9 @@ def test_the_gradient_is_the_slope_of_the_error(learned):
     grid = Grid(joints, plain.beams, [0.75, -0.5, 1.0, -0.25], 0)
     space = Space.of(grid, Free())
     vertices = [Vertex("joint", 3), Vertex("joint", 1, 5), Vertex("beam", 2, 1, 1)]
-    goals = Goals.of(vertices, np.array([[50, 50, 9.0], [40, 5, 3], [0, 20, 7]]), [1, 2, 3])
+    vertices.append(Vertex("beam", 3, None, 2))
+    targets = np.array([[50, 50, 9.0], [40, 5, 3], [0, 20, 7], [30, 40, 5]])
+    goals = Goals.of(vertices, targets, [1, 2, 3, 4])
     model = learned.bundle.model
 
     def error(x, a):
@@ -54,7 +56,7 @@ def test_the_gradient_is_the_slope_of_the_error(learned):
 
 
 def test_the_method_goes_down_and_ends_with_whole_steps(learned, monkeypatch):
-    # The kernel of the test before does.
+    # The kernel of the test before does: of one cell, four goals and this tolerance.
     monkeypatch.setattr("simulearn.inverse.gradient.TOLERANCE", TIGHT)
     target = learned.simulate([make("twist", (1, 1), 57.0)])[0].centres[-1]
     goals = Goals.centres(target)

@@ -86,10 +86,13 @@ def printers_(
         if as_json:
             print(json.dumps({title: p.model_dump() for title, p in known.items()}))
             return
-        table = Table("name", "printer", "bed, mm", "E", "nozzle, mm", box=None)
+        table = Table("name", "printer", "bed, mm", "firmware", "E", "nozzle, mm", box=None)
+        table.add_column("tried")
         for title, p in known.items():
-            bed, nozzle = f"{p.bed.width:g} x {p.bed.depth:g}", p.print.get("nozzle", "")
-            table.add_row(title, p.title, bed, p.extruder.extrusion, str(nozzle))
+            bed, nozzle = f"{p.bed.width:g} x {p.bed.depth:g}", str(p.print.get("nozzle", ""))
+            bed = f"{p.bed.width:g}, round" if p.bed.round else bed
+            tried, firmware = p.tried or "by nobody", p.firmware
+            table.add_row(title, p.title, bed, firmware, p.extruder.extrusion, nozzle, tried)
         out.print(table)
         return
     profile = load_printer(name)

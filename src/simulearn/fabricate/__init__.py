@@ -4,7 +4,8 @@ from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.gcode import write_gcode
 from simulearn.fabricate.job import Job, prepare
 from simulearn.fabricate.package import model_number, write_package
-from simulearn.fabricate.printer import Printer, load_printer, printers, profile_text, read_profile
+from simulearn.fabricate.printer import Printer
+from simulearn.fabricate.profiles import load_printer, printers, profile_text, read_profile
 from simulearn.fabricate.settings import Settings, extrusion, settings_of
 from simulearn.fabricate.toolpath import ROLES, Bead, Layer, Toolpath, toolpath_to_dict
 

@@ -61,3 +61,11 @@ def after(printer: Printer) -> Iterator[str]:
     yield "G90"
     yield "M83"
     yield "G92 E0"
+
+
+def off(state: State) -> Iterator[str]:
+    """Yield what stands after the end code, in a state in which it leaves the machine."""
+    if state.heats:
+        yield "; SimuLearn: heaters off, which the end code left on"
+        yield "M104 S0"
+        yield "M140 S0"

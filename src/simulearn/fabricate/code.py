@@ -6,6 +6,7 @@ with E as the profile counts it; the end code begins at the place of the last mo
 Where a line of the start code lets a hot nozzle wait on the bed, a lift is written before it.
 """
 
+import re
 import unicodedata
 from dataclasses import dataclass, replace
 
@@ -14,15 +15,15 @@ from simulearn.fabricate import heat
 from simulearn.fabricate.commands import Command, commands
 from simulearn.fabricate.firmware import DIALECTS
 from simulearn.fabricate.machine import Machine
-from simulearn.fabricate.motion import reach
 from simulearn.fabricate.moves import Moves
 from simulearn.fabricate.placeholders import fill, fill_comment
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
-from simulearn.fabricate.state import State
+from simulearn.fabricate.state import Box, State
 from simulearn.fabricate.toolpath import Toolpath
 from simulearn.grid import Message
 
+ZERO = re.compile(r"[A-Za-z]\s*0\d")
 LIFT = 10.0  # mm above the bed, where a nozzle heats up
 
 
@@ -33,18 +34,20 @@ class Frame:
     Attributes:
         low: least x and y of what is printed, mm.
         high: greatest x and y.
+        top: height of what is printed, mm.
         last: x, y and z of the nozzle after the print, mm.
     """
 
     low: tuple[float, float]
     high: tuple[float, float]
+    top: float
     last: tuple[float, float, float]
 
 
 def frame_of(path: Toolpath, moves: Moves) -> Frame:
     """Return where a toolpath is printed."""
     low, high = path.bounds.tolist()
-    return Frame(tuple(low), tuple(high), tuple(moves.places[-1].tolist()))
+    return Frame(tuple(low), tuple(high), path.layers[-1].z, tuple(moves.places[-1].tolist()))
 
 
 @dataclass(frozen=True)
@@ -98,9 +101,12 @@ def end_code(printer: Printer, settings: Settings, frame: Frame) -> Script:
         e=0.0,
         back=settings.retraction,
         hot=settings.temperature,
+        print=Box(frame.low, frame.high, frame.top),
         cold=heat.cold_limit(printer),
     )
-    return _script(printer, settings, frame, "end", state)
+    script = _script(printer, settings, frame, "end", state)
+    _pushed_back(script.state, f"{printer.name}: code.end")
+    return script
 
 
 def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Message]:
@@ -114,8 +120,7 @@ def code_messages(printer: Printer, settings: Settings, frame: Frame) -> list[Me
 
 def lift(settings: Settings, printer: Printer) -> str:
     """Return the move that takes the nozzle off the bed, in absolute coordinates."""
-    height = min(LIFT, reach(printer)["Z"][1])
-    return f"G0 Z{height:g} F{settings.speed_z:g}"
+    return f"G0 Z{min(LIFT, printer.bed.height):g} F{settings.speed_z:g}"
 
 
 def _script(printer: Printer, settings: Settings, frame: Frame, which: str, state: State) -> Script:
@@ -128,7 +133,7 @@ def _script(printer: Printer, settings: Settings, frame: Frame, which: str, stat
         _ascii(code, where)
         code = fill(code, words, where).rstrip()
         for command in _commands(code, printer, where):
-            if which == "start" and _lifts(command, machine.state, where):
+            if which == "start" and _lifts(command, machine.state, printer, where):
                 lines += _off_bed(machine, settings, where)
             machine.run(command, where)
             _in_dialect(command, printer, where)
@@ -184,12 +189,17 @@ def _in_dialect(command: Command, printer: Printer, where: str) -> None:
         raise InputError(
             f"{where}: {dialect.title} does not read small letters; write {command.text.upper()}"
         )
+    if dialect.exact and command.is_code and ZERO.match(command.text):
+        raise InputError(
+            f"{where}: {dialect.title} does not know {command.text.split()[0]}; write "
+            f"{command.name}"
+        )
 
 
-def _lifts(command: Command, state: State, where: str) -> bool:
+def _lifts(command: Command, state: State, printer: Printer, where: str) -> bool:
     """Return whether a command lets a hot nozzle wait on the bed."""
     low = state.least_z is not None and not state.clear
-    return low and command.name in heat.COMMANDS and heat.waits(command, state, where)
+    return low and command.name in heat.COMMANDS and heat.waits(command, state, printer, where)
 
 
 def _off_bed(machine: Machine, settings: Settings, where: str) -> list[str]:
@@ -217,8 +227,22 @@ def _ready(state: State, printer: Printer) -> None:
     for axis, homed in state.homed.items():
         if homed is False:
             raise InputError(f"{where}: does not home {axis}; write G28 into it")
+    if printer.firmware in ("marlin", "prusa") and state.probed and not state.levelled:
+        better = "G29 A" if printer.firmware == "prusa" else "M420 S1"
+        raise InputError(
+            f"{where}: probes the bed (G29), but homing (G28) switches levelling off; write "
+            f"{better} after both"
+        )
+    _pushed_back(state, where)
+
+
+def _pushed_back(state: State, where: str) -> None:
+    """Make sure that the next moves do not begin with filament that G10 has drawn back."""
     if state.retracted:
-        raise InputError(f"{where}: draws filament back (G10) and does not push it back (G11)")
+        raise InputError(
+            f"{where}: draws filament back (G10) and does not push it back (G11); write G1 E-2, "
+            f"which is followed, or both"
+        )
 
 
 def _ascii(code: str, where: str) -> None:

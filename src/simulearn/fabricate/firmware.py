@@ -24,6 +24,7 @@ class Dialect:
         lower_case: whether it reads commands in small letters.
         several: whether it reads several commands on a line.
         parentheses: whether what stands in parentheses is a comment.
+        exact: whether it compares commands as texts, so that G01 is not G1.
         macros: whether a word of its owner's making may be a command.
         touches: above this temperature its nozzle oozes onto the bed that it touches to find it,
             C; None where a probe or a switch finds the bed.
@@ -35,6 +36,7 @@ class Dialect:
     lower_case: bool = True
     several: bool = False
     parentheses: bool = False
+    exact: bool = False
     macros: bool = False
     touches: float | None = None
 
@@ -43,7 +45,7 @@ DIALECTS = {
     "marlin": Dialect("Marlin", longest=95, lower_case=False),
     "prusa": Dialect("Prusa's firmware", longest=95, lower_case=False, touches=175.0),
     "bambu": Dialect("Bambu Lab's firmware", lower_case=False, touches=150.0),
-    "klipper": Dialect("Klipper", macros=True),
+    "klipper": Dialect("Klipper", exact=True, macros=True),
     "reprap": Dialect("RepRapFirmware", cold=160.0, longest=255, several=True, parentheses=True),
     "sailfish": Dialect("GPX", several=True, parentheses=True),
 }

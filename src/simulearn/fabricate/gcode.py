@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.fabricate import markers
-from simulearn.fabricate.around import after, before, begin
+from simulearn.fabricate.around import after, before, begin, off
 from simulearn.fabricate.code import end_code, frame_of, start_code
 from simulearn.fabricate.estimate import Estimate
 from simulearn.fabricate.header import footer, header
@@ -80,13 +80,16 @@ def gcode(
     frame = frame_of(path, moves)
     firmware = printer.firmware
     body = list(_body(path, moves, durations, settings, printer, names))
-    end = [*after(printer), *end_code(printer, settings, frame).lines]
+    ended = end_code(printer, settings, frame)
+    stop, end = list(after(printer)), [*ended.lines, *off(ended.state)]
+    if firmware == "reprap":
+        # From the end upwards, Duet Web Control takes what stands before a G90 for relative and
+        # finds no height; the moves of the print have left the machine in absolute coordinates.
+        stop, end = [line for line in stop if line != "G90"], _ended(end)
     started = start_code(printer, settings, frame)
     start = started.lines
     if firmware == "bambu" and not settings.bed:
         start = [line for line in start if not BED_OFF.match(line)]
-    if firmware == "reprap":
-        end = _ended(end)
     lines = [
         *header(path, bounds, estimated, settings, printer, material, names, notes, warnings),
         *thumbnails(path, firmware),
@@ -96,6 +99,7 @@ def gcode(
         *before(settings, printer, started.state),
         *markers.all_layers(path, firmware),
         *body,
+        *stop,
         *end,
         *footer(path, printer),
     ]

@@ -19,7 +19,8 @@ from simulearn.grid import Message
 SHOWN = ("M117", "M118")  # their text is shown, not done
 # These move the nozzle to a place of their own choice.
 WANDERS = {"G12", "G27", "G29", "G30", "G32", "G33", "G34", "G35", "G38", "G80", "G380"}
-WANDERS |= {"M48", "M125", "M600", "M701"}
+WANDERS |= {"M48", "M125", "M701"}
+PROBES = WANDERS - {"G12", "G27", "M125", "M701"}
 KLIPPER_WANDERS = {"BED_MESH_CALIBRATE", "QUAD_GANTRY_LEVEL", "Z_TILT_ADJUST", "PROBE"}
 KLIPPER_WANDERS |= {"SCREWS_TILT_CALCULATE", "BED_TILT_CALIBRATE"}
 # Commands of Klipper's own that change nothing of the state.
@@ -76,11 +77,16 @@ class Machine:
         elif name in heat.COMMANDS:
             self._message("oozes", where, heat.heat(command, self.state, self.printer, where))
         elif name == "M132" and self.printer.firmware == "sailfish":
-            for axis in command.words.keys() & self.state.at.keys():
+            for axis in command.words.keys() & self.state.at_end:
                 self.state.homed[axis] = True  # by its memory; the file learns it by a move
         elif name in WANDERS or (self._klipper and name in KLIPPER_WANDERS):
+            if name in PROBES or self._klipper:
+                self._over_print(command, where)
             self._touches(command, where)
             self.state.lose_place()
+            self._level(command)
+        elif name == "M420" and command.words.get("S"):
+            self.state.levelled = command.words["S"] != "0"
         elif name.startswith("T") and command.is_code:
             self.state.target = self.state.hot = None
         elif name == "M98" or not command.is_code:
@@ -101,7 +107,7 @@ class Machine:
                 f"{where}: G92 sets all axes on this machine, and where they are is not known; "
                 f"write M132 X Y Z A B after homing, and a move to X, Y and Z"
             )
-        if not command.words and self._klipper:
+        if self._klipper and "E" not in command.words:
             raise InputError(f"{where}: G92 {refused.ORIGIN}; only G92 E is allowed")
         value = command.number("E", where)
         self.state.e = value if value is not None else self.state.e
@@ -109,13 +115,29 @@ class Machine:
     def _home(self, command: Command, where: str) -> None:
         axes = [axis for axis in "XYZ" if axis in command.words] or list("XYZ")
         if "Z" in axes:
+            self._over_print(command, where, "G28 X Y")
             self._touches(command, where)
             self.state.least_z = 0.0
+            self.state.on_bed = True
         self.state.time_passes()
         for axis in axes:
             self.state.at[axis] = None
             # GPX does not know where the ends of the axes are.
             self.state.homed[axis] = self.printer.firmware != "sailfish"
+        self.state.at_end |= set(axes)
+        self.state.levelled = False  # so Marlin and Prusa's firmware have it
+
+    def _over_print(self, command: Command, where: str, better: str = "") -> None:
+        """Make sure that the nozzle does not come down where the print stands.
+
+        A machine with a round bed is taken for a delta, which homes upwards.
+        """
+        if self.state.print is None or (self.printer.bed.round and command.name == "G28"):
+            return
+        raise InputError(
+            f"{where}: {command.name} leads down to the bed, on which the print stands; "
+            + (f"write {better}" if better else "leave it out")
+        )
 
     def _touches(self, command: Command, where: str) -> None:
         """Warn of a nozzle that oozes onto the bed which it touches to find it."""
@@ -128,6 +150,14 @@ class Machine:
                 f"{command.name} touches the bed with a nozzle that is heated to {target:g} C and "
                 f"oozes; heat it to at most {touches:g} C before",
             )
+
+    def _level(self, command: Command) -> None:
+        """Follow G29: in Prusa's firmware P1 probes, and A makes use of it."""
+        if command.name != "G29":
+            return
+        prusa = self.printer.firmware == "prusa"
+        self.state.probed |= not prusa or command.words.get("P") == "1"
+        self.state.levelled |= not prusa or "A" in command.words
 
     def _release(self, command: Command) -> None:
         """Follow the motors being switched off: the axes may then be pushed anywhere."""

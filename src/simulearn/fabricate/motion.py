@@ -8,8 +8,10 @@ from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.state import State
 
 ROUNDING = 1e-6
+RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
 MOST_BACK = 20.0  # mm of filament; further back it leaves the melt zone and is unloaded
 MOST_AT_ONCE = 50.0  # mm of filament without a move; Klipper refuses more
+MOST_LEFT = 1.0  # mm of filament that end code may feed beyond what is drawn back
 WIDEST = 4.0  # times the nozzle squared: section of a bead above which Klipper refuses
 NOZZLE = 0.4  # mm, where a profile does not say
 
@@ -40,7 +42,13 @@ def move(command: Command, state: State, printer: Printer, where: str) -> None:
             raise InputError(f"{where}: F{command.words['F']} is no speed")
     _homed(command, state, printer, where)
     _on_bed(command, state, printer, where)
+    _over_print(before, state, where)
     value = command.number("E", where)
+    if state.on_bed and value is None and (command.words.keys() & {"X", "Y"}):
+        raise InputError(
+            f"{where}: moves across the bed with the nozzle on it, as far as is known after "
+            f"homing; write a move in Z before it, as G0 Z5"
+        )
     if value is not None:
         _feed(value, _length(command, before, state), state, printer, where)
 
@@ -66,6 +74,7 @@ def _axis(axis: str, value: float, state: State, printer: Printer, where: str) -
     if state.relative and before is None:
         if axis == "Z" and value >= 0:  # up is safe from anywhere
             state.least_z = None if state.least_z is None else state.least_z + value
+            state.on_bed = state.on_bed and value < RUBS
             return
         raise InputError(
             f"{where}: {axis}{value:g} is relative to a place that is not known here; "
@@ -80,18 +89,26 @@ def _axis(axis: str, value: float, state: State, printer: Printer, where: str) -
     state.at[axis] = value
     if axis == "Z":
         state.least_z = value
+        state.on_bed = value < RUBS
 
 
 def _homed(command: Command, state: State, printer: Printer, where: str) -> None:
     for axis in "XYZ":
         if not command.words.get(axis) or state.homed[axis] is not False:
             continue
-        if axis == "Z" and state.relative and printer.firmware != "klipper":
+        if axis == "Z" and state.relative and _rises(command, printer):
             continue  # up before homing
         hint = "home it first (G28)"
         if printer.firmware == "sailfish":
             hint = "write M132 X Y Z A B after homing"
         raise InputError(f"{where}: {axis} moves before the machine knows where it is; {hint}")
+
+
+def _rises(command: Command, printer: Printer) -> bool:
+    """Return whether the firmware lifts the nozzle before homing."""
+    if printer.firmware == "reprap":
+        return "H" in command.words
+    return printer.firmware != "klipper"
 
 
 def _on_bed(command: Command, state: State, printer: Printer, where: str) -> None:
@@ -108,6 +125,21 @@ def _on_bed(command: Command, state: State, printer: Printer, where: str) -> Non
         raise InputError(f"{text}, which is round; {printer.name} reaches {most:g} mm")
     if bed.shape_unclear:
         raise InputError(f"{text}; {bed.ask_shape()}")
+
+
+def _over_print(before: dict[str, float | None], state: State, where: str) -> None:
+    """Make sure that the nozzle does not come down where the print stands."""
+    box, z = state.print, state.at["Z"]
+    heights = [height for height in (before["Z"], z) if height is not None]
+    if box is None or not heights or min(heights) >= box.top - ROUNDING:
+        return
+    places = [(at["X"], at["Y"]) for at in (before, state.at)]
+    known = [(x, y) for x, y in places if x is not None and y is not None]
+    if len(known) < len(places) or box.meets(*known):
+        raise InputError(
+            f"{where}: leads down to Z {min(heights):g} mm where the print stands, which is "
+            f"{box.top:g} mm high"
+        )
 
 
 def _length(command: Command, before: dict[str, float | None], state: State) -> float | None:
@@ -148,6 +180,11 @@ def _feed(value: float, length: float | None, state: State, printer: Printer, wh
         raise InputError(
             f"{where}: moves filament before the nozzle is hot; write M109 S{{temperature}} "
             f"before it"
+        )
+    if state.print is not None and fed > state.back + MOST_LEFT:
+        raise InputError(
+            f"{where}: feeds {fed:g} mm of filament after the print, and the heaters are off; "
+            f"leave it out"
         )
     state.back = max(0.0, state.back - fed)
     if state.back > MOST_BACK:

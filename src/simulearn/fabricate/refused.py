@@ -26,6 +26,7 @@ ALWAYS = {
     "G2": "is an arc, and an arc (G2, G3) cannot be checked; use straight moves",
     "G3": "is an arc, and an arc (G2, G3) cannot be checked; use straight moves",
     "G5": "is a curve, which cannot be checked; use straight moves",
+    "M600": "waits for other filament",
     "M702": UNLOADS,
     "T255": UNLOADS,
     "UNLOAD_FILAMENT": UNLOADS,

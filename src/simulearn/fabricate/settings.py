@@ -82,10 +82,11 @@ class Settings:
         flow: extruded volume over that of a rectangular bead, by role.
         first_layer_speed: beads of the first layer are no faster.
         first_layer_flow: flow of the first layer over that of the others.
-        acceleration: while printing: the material's, or the machine's where that is lower.
+        acceleration: while printing: the material's, or the machine's where that is lower or the
+            file cannot set it.
         corner_speed: at which a right angle is taken, likewise, mm/s.
         travel: speed of travels.
-        acceleration_travel: of travels, the machine's.
+        acceleration_travel: of travels, the machine's, or that of prints where it has one for both.
         speed_z: of lifts.
         lift: how far the nozzle lifts to travel.
         retraction: how much filament is drawn back to travel.
@@ -196,6 +197,10 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
             f"wide; it would not stick to the one below"
         )
     warnings += _too_fast(printer, ours)
+    acceleration, corner_speed = printer.motion.acceleration, printer.motion.corner_speed
+    if printer.sets_limits:
+        acceleration = min(ours.acceleration, acceleration)
+        corner_speed = min(ours.corner_speed, corner_speed)
     speed = {SKIRT: ours.speed_skirt, BRIM: ours.speed_skirt, SHELL: ours.speed_shell}
     flow = dict.fromkeys((SKIRT, BRIM, SHELL, ACTIVE), ours.flow_active)
     return (
@@ -215,10 +220,12 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
             flow=flow | {PASSIVE: ours.flow_passive, JOINT: ours.flow_joint},
             first_layer_speed=ours.first_layer_speed,
             first_layer_flow=ours.first_layer_flow,
-            acceleration=min(ours.acceleration, printer.motion.acceleration),
-            corner_speed=min(ours.corner_speed, printer.motion.corner_speed),
+            acceleration=acceleration,
+            corner_speed=corner_speed,
             travel=min(ours.speed_travel, printer.motion.speed),
-            acceleration_travel=printer.motion.acceleration_travel,
+            acceleration_travel=acceleration
+            if printer.one_acceleration
+            else printer.motion.acceleration_travel,
             speed_z=min(ours.speed_z, printer.motion.speed_z),
             lift=printer.extruder.lift,
             retraction=ours.retraction,

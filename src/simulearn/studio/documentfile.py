@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
 
 from simulearn.errors import InputError
-from simulearn.fabricate.printer import MOST_TEXT
+from simulearn.fabricate.profiles import MOST_TEXT
 from simulearn.grid.arrays import shown
 from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
 from simulearn.material.material import is_name

@@ -72,6 +72,7 @@ def _klipper(code: str) -> list[Command]:
     parts = KLIPPER.split(upper)
     if parts[1:2] == ["N"]:
         parts = parts[2:]
+        parts[0] = ""
     name = "".join(parts[:3]).strip()
     if not re.fullmatch(r"[A-Z]\d+(\.\d+)?", name):
         word = upper.split()[0]

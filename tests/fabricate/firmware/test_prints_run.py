@@ -110,8 +110,9 @@ MISSING = {
 
 ALWAYS = {"G28", "M109 S205", "M104 S0", "M22[01] S100"}
 # What a firmware makes good: GPX begins each file with factors of 100; a Prusa and a Bambu end
-# their levelling above the bed.
+# their levelling above the bed; a Bambu levels after G29.2 S1.
 BETTER = {"M22[01] S100": ["sailfish"], r"G0 Z(5|10)\b": ["prusa", "bambu"]}
+BETTER |= {"G29 A": ["bambu"]}
 
 
 @pytest.mark.parametrize("name", printers())

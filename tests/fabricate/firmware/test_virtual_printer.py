@@ -273,6 +273,7 @@ def test_a_line_that_is_too_long_is_noticed():
         ("G91 G0 X5", "reprap", ["G91", "G0"]),
         ("G91 G0 X5", "klipper", ["G91"]),
         ("N10 G28*33", "marlin", ["G28"]),
+        ("N7 G1 X5 E2", "klipper", ["G1"]),
         ("G 28", "marlin", ["G28"]),
         ("M117 G28 X999", "reprap", ["M117"]),
         ("G29.2 S1 ; on", "bambu", ["G29.2"]),

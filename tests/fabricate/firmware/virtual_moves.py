@@ -17,6 +17,8 @@ RUBS = 0.2  # mm above the bed below which a nozzle rubs on it
 UNLOADS = 20.01  # mm of filament; more comes out of the melt zone
 JUMP = 50.0  # mm of filament in one move without a way (Klipper: max_extrude_only_distance)
 WIDEST = 4.0  # times the nozzle squared: section of a bead (Klipper: max_extrude_cross_section)
+TRICKLE = 1.0  # mm of filament
+PURGE = 1.5  # mm of filament on a millimetre of a purge line
 TINY = 1e-6
 
 
@@ -135,12 +137,13 @@ class Mover:
 
     def extruded(self, fed: float, away: Any, z: Any) -> None:
         s = self.state
-        if self.printing and not self.beads and fed > 0 and away is not HIDDEN and away > TINY:
+        along = away is not HIDDEN and away > TINY
+        if self.printing and not self.beads and fed > 0 and along:
             self.begins()
         if s.coldest is HIDDEN:
             self.trace.hidden += 1
-        elif s.coldest < self.limits.cold and (fed > 0 or not self.beads):
-            # A nozzle that was just switched off is still warm enough to draw back.
+        elif s.coldest < self.limits.cold and ((along and fed > TRICKLE) or not self.beads):
+            # A nozzle that was just switched off is still warm; it must not smear the print.
             self.danger("cold", f"the nozzle may have {s.coldest:g} C")
         self.trace.fed += fed
         if known(s.back):
@@ -155,15 +158,23 @@ class Mover:
             if fed > JUMP:
                 self.danger("e-jump", f"{fed:.0f} mm of filament in one place")
             return
-        if fed > 0 and fed * self.area / away > WIDEST * self.limits.nozzle**2:
-            tiny = fed * self.area <= WIDEST * self.limits.nozzle**2 * self.limits.nozzle
-            if not tiny:
-                self.danger("e-jump", f"{fed:.1f} mm of filament on {away:.1f} mm")
+        self.section(fed, away)
         if self.printing and s.target != 0:
             if fed > 0:
                 self.bead(fed, z)
             elif fed < -TINY:
                 self.danger("e-jump", f"{-fed:.2f} mm of filament are drawn back along a bead")
+
+    def section(self, fed: float, away: float) -> None:
+        """Check that a bead is not thicker than the nozzle can lay; a purge may be."""
+        widest = WIDEST * self.limits.nozzle**2
+        if self.firmware == "klipper" or self.printing:
+            # Klipper lets a tiny amount pass.
+            thick = fed * self.area > widest * max(away, self.limits.nozzle)
+        else:
+            thick = fed > PURGE * away
+        if thick:
+            self.danger("e-jump", f"{fed:.1f} mm of filament on {away:.1f} mm")
 
     def bead(self, fed: float, z: Any) -> None:
         x, y = self.state.place["X"], self.state.place["Y"]

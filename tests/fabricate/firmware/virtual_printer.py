@@ -249,7 +249,7 @@ class _Machine:
         for axis in axes:
             # A Replicator knows where its switches are only after M132.
             s.homed[axis] = NEVER if self.firmware == "sailfish" else True
-            s.place[axis] = 0.0 if axis == "Z" else NEVER
+            s.place[axis] = 0.0 if axis == "Z" and not self.limits.round_bed else NEVER
             s.shift[axis] = 0.0
         if self.firmware == "sailfish":
             s.place["Z"] = NEVER
@@ -288,6 +288,8 @@ class _Machine:
         s = self.state
         if not self.mover.beads:
             self.danger("nothing", "nothing is printed")
+        if s.retracted is True:
+            s.retracted = HIDDEN  # by how much is a setting of the machine, where it knows G10
         if (known(s.target) and s.target > 0) or (known(s.bed) and s.bed > 0):
             self.danger("heaters-on", f"nozzle {s.target} C, bed {s.bed} C")
         if self.mover.beads and all(known(s.place[axis]) for axis in AXES):

@@ -29,7 +29,7 @@ from simulearn.learn.paper.config import PaperConfig
 from simulearn.learn.paper.graph import Graph
 from simulearn.learn.paper.loss import Examples, LossWeights, Prepared, loss
 from simulearn.learn.paper.model import Paper
-from simulearn.learn.paper.network import DoubleInteraction, Normalisers
+from simulearn.learn.paper.network import DoubleInteraction, Normalisers, Sizes
 from simulearn.learn.paper.normalisers import normalisers
 
 PARTS = ("loss", "release", "creep", "stress", "dislocation")
@@ -158,19 +158,28 @@ def begin(config: PaperConfig, batches: Sequence[Batch]) -> TrainingState:
     aligned = config.orientation == "aligned"
     release, creep = normalisers(batches, config.variance, config.seed, aligned)
     sizes = config.release.sizes, config.creep.sizes
-
-    @eqx.filter_jit  # one kernel for all weights is quicker to compile than one for each
-    def drawn(release: Normalisers, creep: Normalisers, key: Array) -> TrainingState:
-        keys = jax.random.split(key)
-        engines = (
-            DoubleInteraction(release, sizes[0], keys[0]),
-            DoubleInteraction(creep, sizes[1], keys[1]),
-        )
-        model = Paper(*engines, sizes, aligned)
-        return TrainingState(model, OPTIMISERS[config.optimiser].init(_learnt(model)[0]))
-
-    run: TrainingState = drawn(release, creep, jax.random.key(config.seed))
+    key = jax.random.key(config.seed)
+    run: TrainingState = _drawn(release, creep, key, sizes, aligned, config.optimiser)
     return run
+
+
+@eqx.filter_jit  # one kernel for all weights is quicker to compile than one for each
+def _drawn(
+    release: Normalisers,
+    creep: Normalisers,
+    key: Array,
+    sizes: tuple[Sizes, Sizes],
+    aligned: bool,
+    optimiser: str,
+) -> TrainingState:
+    """Return a run whose weights are drawn by a key; see `begin`."""
+    keys = jax.random.split(key)
+    engines = (
+        DoubleInteraction(release, sizes[0], keys[0]),
+        DoubleInteraction(creep, sizes[1], keys[1]),
+    )
+    model = Paper(*engines, sizes, aligned)
+    return TrainingState(model, OPTIMISERS[optimiser].init(_learnt(model)[0]))
 
 
 def _learnt(model: Paper) -> tuple[Paper, Paper]:
