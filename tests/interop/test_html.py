@@ -349,7 +349,7 @@ def test_page_has_the_words_that_its_modules_use():
     for path in bundle.modules:
         if path.is_relative_to(STUDIO.resolve()) or path.is_relative_to(OWN):
             used |= set(re.findall(r"""\bt\([^)]*?["`](\w+)\.""", path.read_text("utf-8")))
-    assert used == {"shape", "share"}
+    assert used == {"common", "shape", "share"}
 
 
 def test_studio_extra_is_where_the_libraries_are():
