@@ -2,18 +2,10 @@
 
 from functools import cache
 
-from simulearn.fabricate import load_printer, prepare
+from simulearn.fabricate import load_printer, prepare, printers
 from simulearn.grid import make
 
-FIRMWARE = {
-    "bambu-x1": "bambu",
-    "ender-3": "marlin",
-    "makerbot-2x": "sailfish",
-    "modix-big60": "reprap",
-    "prusa-mk4": "prusa",
-    "stacker-s4": "marlin",
-    "voron": "klipper",
-}
+FIRMWARE = {name: load_printer(name).firmware for name in printers()}
 GRIDS = {
     "cone": ([make("cone")], ["cone"]),
     "twist": ([make("twist", (2, 2), 40.0)], ["twist"]),
@@ -25,12 +17,7 @@ GRIDS = {
 }
 
 
-def machine(name):
-    """Return a printer with the firmware that its maker gives it."""
-    return load_printer(name).model_copy(update={"firmware": FIRMWARE[name]})
-
-
 @cache
 def job_of(printer, grids):
     """Return a print by the names of its printer and of its grids."""
-    return prepare(GRIDS[grids][0], machine(printer), GRIDS[grids][1])
+    return prepare(GRIDS[grids][0], load_printer(printer), GRIDS[grids][1])

@@ -9,12 +9,12 @@ import zipfile
 
 import pytest
 from PIL import Image
-from several import job_of, machine
+from several import job_of
 
 import simulearn.cli.fabricate  # noqa: F401  (adds its commands)
 from simulearn import cli
 from simulearn.errors import InputError
-from simulearn.fabricate import model_number, prepare, write_package
+from simulearn.fabricate import load_printer, model_number, prepare, write_package
 from simulearn.grid import make
 
 PICTURES = {
@@ -89,14 +89,14 @@ def test_pictures_have_their_sizes(package):
 def test_the_same_print_gives_the_same_bytes(tmp_path):
     contents = set()
     for k in range(2):
-        job = prepare([make("dome", (1, 1), 30.0)], machine("bambu-x1"), ["dome"])
+        job = prepare([make("dome", (1, 1), 30.0)], load_printer("bambu-x1"), ["dome"])
         write_package(job, tmp_path / f"{k}.gcode.3mf")
         contents.add((tmp_path / f"{k}.gcode.3mf").read_bytes())
     assert len(contents) == 1
 
 
 def test_models_are_known_by_their_titles():
-    x1 = machine("bambu-x1")
+    x1 = load_printer("bambu-x1")
     titles = {
         "Bambu Lab X1": "BL-P002",
         "bambu lab x1 carbon": "BL-P001",

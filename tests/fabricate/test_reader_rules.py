@@ -1,7 +1,7 @@
 """Readers that cannot be installed here: their rules, written down from their sources.
 
 RepRapFirmware 3.5.3 (src/Storage/FileInfoParser.cpp), DuetSoftwareFramework 3.5 (InfoParser.cs,
-Settings.cs), PrusaSlicer 2.9 (libslic3r/GCode/GCodeProcessor.cpp), Prusa-Firmware-Buddy 6.2
+Settings.cs), PrusaSlicer 2.9 (libslic3r/GCode/GCodeProcessor.cpp), Prusa-Firmware-Buddy 6.3
 (common/gcode/gcode_reader_plaintext.cpp, gcode_info.cpp, WUI/link_content/previews.cpp).
 """
 

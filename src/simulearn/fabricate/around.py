@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from simulearn.fabricate.code import lift
-from simulearn.fabricate.firmware import factors, limits
+from simulearn.fabricate.firmware import FACTORS, limits
 from simulearn.fabricate.printer import Printer
 from simulearn.fabricate.settings import Settings
 from simulearn.fabricate.state import State
@@ -15,7 +15,7 @@ def modes(printer: Printer) -> Iterator[str]:
     yield "G21"
     yield "G90"
     yield "M83" if printer.extruder.extrusion == "relative" else "M82"
-    yield from factors(printer)
+    yield from FACTORS
 
 
 def begin(printer: Printer) -> Iterator[str]:

@@ -49,13 +49,9 @@ DIALECTS = {
     "reprap": Dialect("RepRapFirmware", cold=160.0, longest=255, several=True, parentheses=True),
     "sailfish": Dialect("GPX", several=True, parentheses=True),
 }
+FACTORS = ("M220 S100", "M221 S100")  # of speed and flow, in every dialect alike
 # Marlin refuses junction deviations outside of this range (M205 J), mm.
 LEAST_DEVIATION, MOST_DEVIATION = 0.01, 0.3
-
-
-def factors(printer: Printer) -> list[str]:
-    """Return the lines that set the factors of speed and flow to 100 %, in every dialect alike."""
-    return ["M220 S100", "M221 S100"]
 
 
 def limits(settings: Settings, printer: Printer) -> list[str]:

@@ -231,3 +231,39 @@ def test_other_letters_in_code_are_refused_with_their_place(gcode, line):
     text, trace, _ = gcode(profile(f"{SOUND}\n{line}"))
     assert trace is None
     assert "code.start, line 4" in text
+
+
+@pytest.mark.parametrize(
+    ("base", "start", "words"),
+    [
+        ("voron", "G28\nG01 Z5", "write G1"),
+        ("voron", "G028\nG0 Z5", "write G28"),
+        ("ender-3", "G28\nG0 Z0.05 F300\nG0 X90 Y90", "on it"),
+    ],
+)
+def test_what_a_firmware_passes_over_or_rubs_on_is_refused(gcode, base, start, words):
+    text, trace, _ = gcode(profile(start, base=base))
+    assert trace is None
+    assert words in text
+
+
+@pytest.mark.parametrize("pause", ["M0", "M1", "M25", "M226", "M116", "G4 S30"])
+def test_a_hot_nozzle_is_lifted_before_any_pause(gcode, pause):
+    _, trace, file = gcode(profile(f"M104 S{{temperature}}\nG28\n{pause}\nG0 Z5"))
+    assert trace.dangers == []
+    assert file.index("before the nozzle waits hot") < file.index(f"\n{pause}\n")
+
+
+def test_filament_is_not_laid_across_the_print_by_end_code(gcode):
+    text, trace, _ = gcode(profile(end="G1 X100 Y100 E50"))
+    assert trace is None
+    assert "code.end, line 1" in text
+
+
+def test_motors_that_are_off_move_nothing_after_the_print(gcode):
+    for end in ("M84\nG0 X0", "M84\nG91\nG0 Z1\nG90", "M18 Z\nG91\nG0 Z1"):
+        text, trace, _ = gcode(profile(end=end))
+        assert trace is None
+        assert "code.end" in text
+    _, trace, _ = gcode(profile(end="M84 E\nG91\nG0 Z1\nG90\nG0 X0 Y200\nM84"))
+    assert trace.dangers == []

@@ -276,9 +276,8 @@ class _Machine:
             if "A" in words:
                 s.levelled = True
             return
-        if name == "G29.2":
+        if name == "G29.2" and firmware == "bambu":
             s.levelled = (words.get("S") or 0) > 0
-            return
         if name == "G29":
             s.probed, s.levelled = True, HIDDEN if firmware in ("bambu", "klipper") else True
             s.hide_place()

@@ -227,6 +227,7 @@ function countFromZero() {
 
 /** A grid of another unit: the server says by which factor its beams are of usual lengths. */
 function rescale({ message }) {
-  const factor = Number(/multiply all coordinates by ([\d.e+-]+)/.exec(message.message)?.[1] ?? NaN);
+  const factor = Number(/multiply all coordinates by ([\d.e+-]+)/.exec(message.message)?.[1]);
+  if (!(factor > 0)) return null;
   return { label: "repairs.scale", values: { factor: String(factor) }, apply: (one) => scale(one, factor) };
 }
