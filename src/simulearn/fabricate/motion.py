@@ -96,16 +96,18 @@ def _homed(command: Command, state: State, printer: Printer, where: str) -> None
     for axis in "XYZ":
         if not command.words.get(axis) or state.homed[axis] is not False:
             continue
-        if axis == "Z" and state.relative and _rises(command, printer):
-            continue  # up before homing
+        if axis == "Z" and state.relative and _rises(command, state, printer):
+            continue
         hint = "home it first (G28)"
         if printer.firmware == "sailfish":
             hint = "write M132 X Y Z A B after homing"
         raise InputError(f"{where}: {axis} moves before the machine knows where it is; {hint}")
 
 
-def _rises(command: Command, printer: Printer) -> bool:
-    """Return whether the firmware lifts the nozzle before homing."""
+def _rises(command: Command, state: State, printer: Printer) -> bool:
+    """Return whether an axis that is not homed may lift the nozzle: only before homing."""
+    if state.print is not None:
+        return False
     if printer.firmware == "reprap":
         return "H" in command.words
     return printer.firmware != "klipper"
