@@ -6,7 +6,7 @@ import re
 import pytest
 from several import FIRMWARE, job_of
 
-from simulearn.fabricate import prepare
+from simulearn.fabricate import load_printer, prepare
 from simulearn.fabricate.markers import object_names
 from simulearn.grid import make
 
@@ -109,9 +109,7 @@ def test_one_grid_is_no_object(name):
 
 
 def test_the_same_grids_give_the_same_bytes():
-    from several import machine
-
     grids = [make("dome", (1, 1), 30.0)] * 2
     for name in ("voron", "prusa-mk4", "bambu-x1"):
-        texts = {prepare(grids, machine(name), ["a", "b"]).gcode for _ in range(2)}
+        texts = {prepare(grids, load_printer(name), ["a", "b"]).gcode for _ in range(2)}
         assert len(texts) == 1
