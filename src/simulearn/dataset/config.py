@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from simulearn.errors import InputError
 from simulearn.fea import COARSE, Control, Layout
 from simulearn.files import read_text
-from simulearn.grid import Grid, Rules, draw_valid
+from simulearn.grid import KindDesign, Kinds, Rules, draw_kind, draw_valid
 from simulearn.material import Material, load_material
 
 CONFIGS = Path(__file__).parent / "configs"
@@ -52,6 +52,8 @@ class Config(_Data):
         seed: of the designs.
         test_every: trials k with (k + 1) divisible by it are kept for testing; 0: none are.
         rules: how designs are drawn.
+        kinds: how designs of several kinds and materials are drawn, in place of `rules.cells`;
+            none draws lattices of one material.
         solver: mesh and convergence.
     """
 
@@ -60,17 +62,20 @@ class Config(_Data):
     seed: Annotated[int, Field(ge=0)] = 0
     test_every: Annotated[int, Field(ge=0)] = 5
     rules: Rules = Rules()
+    kinds: Kinds | None = None
     solver: Solver = Solver()
 
     @cached_property
     def material(self) -> Material:
-        """The material system of all designs."""
+        """The material system of all designs, or the one whose family theirs are of."""
         return load_material(self.rules.material)
 
-    def design(self, k: int) -> tuple[Grid, int]:
-        """Return design k, centred, and how often it was redrawn."""
+    def design(self, k: int) -> KindDesign:
+        """Return design k, centred; its kind is "" where all are lattices of one material."""
+        if self.kinds is not None:
+            return draw_kind(self.kinds, self.rules, self.material, self.seed, k)
         grid, redraws = draw_valid(self.rules, self.seed, k)
-        return grid.centred, redraws
+        return KindDesign(grid.centred, self.material, "", redraws)
 
     def is_test(self, k: int) -> bool:
         """Return whether trial k is kept for testing."""

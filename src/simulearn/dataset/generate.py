@@ -217,7 +217,7 @@ def generate(
 def _missing(folder: Folder, tally: Tally) -> Iterator[tuple[int, TrialJob]]:
     """Yield the designs that have no trial yet, and count those that have."""
     for k in range(folder.config.trials):
-        job = TrialJob.of(folder.config.design(k)[0], folder.config)
+        job = TrialJob.of(folder.config.design(k), folder.config)
         state = folder.state(job.key)
         if state in ("done", "failed"):
             tally.present += 1

@@ -21,7 +21,7 @@ from simulearn.dataset.packed import SCHEMA, digest
 from simulearn.dataset.trial import SOLVER_VERSION, StoredTrial, TrialJob, is_whole, read_trial
 from simulearn.errors import InputError
 from simulearn.files import replacing
-from simulearn.grid import Grid
+from simulearn.grid import Grid, KindDesign
 
 POSITION = 0.005  # mm
 STRESS = 1e-5  # MPa; more where the largest stress needs it
@@ -34,6 +34,8 @@ UNITS = {
     "numbers": "of the trial in the set; trial",
     "test": "1 if kept for testing; trial",
     "records": "JSON, the solver's record; trial",
+    "materials": "JSON, the material system; trial",
+    "kinds": "name of the kind of grid; trial",
     "joints_first": "step mm; trial, joint, corner, xyz; frame 0",
     "joints_increments": "step mm; trial, frame 1 to 11, joint, corner, xyz; from the last frame",
     "sections_first": "step mm; trial, beam, section, corner, xyz; frame 0",
@@ -45,8 +47,12 @@ UNITS = {
 @dataclass(frozen=True)
 class _Member:
     k: int
-    grid: Grid
+    design: KindDesign
     trial: StoredTrial
+
+    @property
+    def grid(self) -> Grid:
+        return self.design.grid
 
 
 def pack(
@@ -73,11 +79,12 @@ def pack(
     redraws = missing = 0
     for k in range(config.trials):
         progress(k, config.trials)
-        grid, redrawn = config.design(k)
-        redraws += redrawn
-        key = TrialJob.of(grid, config).key
+        design = config.design(k)
+        grid = design.grid
+        redraws += design.redraws
+        key = TrialJob.of(design, config).key
         if is_whole(source.trial(key)):
-            member = _Member(k, grid, read_trial(source.trial(key)))
+            member = _Member(k, design, read_trial(source.trial(key)))
             groups[len(grid.joints), grid.fixed, tuple(grid.beams.ravel().tolist())].append(member)
         elif (why := source.why(key)) is not None:
             failures.append((k, why))
@@ -121,6 +128,10 @@ def _write(group: h5py.Group, config: Config, members: Sequence[_Member]) -> Non
     put("test", np.array([config.is_test(m.k) for m in members], np.uint8))
     records = [json.dumps(m.trial.record, sort_keys=True) for m in members]
     put("records", np.array(records, dtype=h5py.string_dtype()))
+    if config.kinds is not None:
+        materials = [m.design.material.model_dump_json() for m in members]
+        put("materials", np.array(materials, dtype=h5py.string_dtype()))
+        put("kinds", np.array([m.design.kind for m in members], dtype=h5py.string_dtype()))
     put.positions("joints", [m.trial.joints for m in members])
     put.positions("sections", [m.trial.beams for m in members])
     put.stress([m.trial.stress for m in members])

@@ -40,8 +40,11 @@ class Batch:
         stress: (T, 12, B, 4, 4, 6), or None if it was not read.
         numbers: (T,) of the trials in the set.
         test: (T,) whether a trial is kept for testing.
-        material: the material system that the trials were computed with.
+        material: the material system that the trials were computed with, or the one whose family
+            theirs are of.
         reference: name or path of it in the designs.
+        materials: (T,) of each trial, where they differ.
+        kinds: (T,) name of each trial's kind of grid, where there are several.
     """
 
     beams: NDArray[np.int64]
@@ -55,6 +58,8 @@ class Batch:
     test: NDArray[np.bool_]
     material: Material
     reference: str
+    materials: tuple[Material, ...] = ()
+    kinds: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.numbers)
@@ -72,7 +77,13 @@ class Batch:
         """Return the trials of an index or mask over T."""
         names = ("flat", "actuators", "joints", "sections", "numbers", "test")
         stress = None if self.stress is None else self.stress[which]
-        return replace(self, stress=stress, **{name: getattr(self, name)[which] for name in names})
+        stay = np.arange(len(self))[which]
+        lists = {
+            name: tuple(values[k] for k in stay)
+            for name in ("materials", "kinds")
+            if (values := getattr(self, name))
+        }
+        return replace(self, stress=stress, **lists, **{name: getattr(self, name)[which] for name in names})
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +208,14 @@ def _batch(group: h5py.Group, material: Material, split: Split | None, stress: b
         test=test[which],
         material=material,
         reference=str(group.attrs["material"]),
+        materials=tuple(Material.model_validate_json(x) for x in _texts(group, "materials", which)),
+        kinds=_texts(group, "kinds", which),
     )
+
+
+def _texts(group: h5py.Group, name: str, which: NDArray[np.int64]) -> tuple[str, ...]:
+    """Return the texts of some trials, none where a set has none."""
+    return tuple(group[name].asstr()[...][which]) if name in group else ()
 
 
 def _positions(group: h5py.Group, name: str, which: NDArray[np.int64]) -> Array:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from simulearn.dataset.config import Config, Solver
 from simulearn.errors import ComputationError, InputError
-from simulearn.grid import Grid, grid_from_dict, grid_to_dict
+from simulearn.grid import Grid, KindDesign, grid_from_dict, grid_to_dict
 from simulearn.material import Material
 
 # Raise it when the solver answers differently, so that older trials are not taken for new ones.
@@ -43,11 +43,11 @@ class TrialJob:
     solver: dict[str, Any]
 
     @classmethod
-    def of(cls, grid: Grid, config: Config) -> "TrialJob":
+    def of(cls, design: KindDesign, config: Config) -> "TrialJob":
         """Return the job of a design."""
         return cls(
-            grid_to_dict(grid),
-            config.material.model_dump(mode="json"),
+            grid_to_dict(design.grid),
+            design.material.model_dump(mode="json"),
             config.solver.model_dump(mode="json"),
         )
 

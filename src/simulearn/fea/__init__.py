@@ -1,6 +1,6 @@
-"""Finite elements: the truth that everything else learns from."""
+"""Finite elements: the reference that everything else learns from."""
 
-from simulearn.fea.mesh import COARSE, THREE_ACROSS, Layout, mesh
+from simulearn.fea.mesh import COARSE, FINE, THREE_ACROSS, Layout, mesh
 from simulearn.fea.problem import Control
 from simulearn.fea.solid import Solid
 from simulearn.fea.trial import Trial, simulate_grid
@@ -8,6 +8,7 @@ from simulearn.schedule import FRAMES
 
 __all__ = [
     "COARSE",
+    "FINE",
     "FRAMES",
     "THREE_ACROSS",
     "Control",

@@ -26,8 +26,8 @@ def law_of(data: MarlowData | ElasticData) -> ConstitutiveLaw:
     """Return the law that a material system's data describe."""
     if isinstance(data, MarlowData):
         return marlow(data)
-    shear = data.modulus / (2 * (1 + data.poisson))
-    bulk = data.modulus / (3 * (1 - 2 * data.poisson))
+    shear = data.stiffness / (2 * (1 + data.poisson))
+    bulk = data.stiffness / (3 * (1 - 2 * data.poisson))
     if data.kind == "neo-hookean":
         return neo_hookean(shear, bulk)
     return st_venant_kirchhoff(bulk - 2 / 3 * shear, shear)
@@ -35,8 +35,9 @@ def law_of(data: MarlowData | ElasticData) -> ConstitutiveLaw:
 
 def marlow(data: MarlowData) -> ConstitutiveLaw:
     """Return the Marlow law that reproduces a uniaxial test."""
-    bulk = data.modulus / (3 * (1 - 2 * data.poisson))
+    bulk = data.stiffness / (3 * (1 - 2 * data.poisson))
     strain, stress = np.array(data.table).T
+    stress *= data.scale
     stretch = 1 + strain
     J = (1 + np.sqrt(1 + 4 * stretch * stress / (3 * bulk))) / 2
     lateral = J / stretch

@@ -52,6 +52,7 @@ class Layout:
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])  # two points on [0, 1]
 
 COARSE = Layout()  # 210 bricks in a 2x2 grid
+FINE = Layout(core=1, slabs=16)  # 1,314: a tenth of a per cent from what finer ones converge to
 THREE_ACROSS = Layout(core=1)  # shell, core, shell: one growth per brick, as CalculiX needs it
 
 
@@ -135,12 +136,15 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
     held &= (support.lower <= middle) & (middle <= support.upper)
     centre = (along[:, 1:] + along[:, :-1]) / 2  # of slabs
     width = np.diff(across)
+    rule = np.where(beam[:, None] < 0, joint_points[2], points[2])
+    heights = up[layer][:, None] + np.diff(up)[layer][:, None] * rule
     angle, growth, stress = printing(
         grid,
         material,
         beam=beam,
         along=np.where(beam < 0, 0.5, centre[beam, slab % layout.slabs]),
         across=across[strip][:, None] + width[strip][:, None] * points[1],
+        up=heights / section.thickness,
         top=layer >= layout.layers,
     )
     # Scikit-fem numbers the vertices first, so that a vertex is its own node.

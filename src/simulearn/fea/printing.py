@@ -3,7 +3,8 @@
 Printed plastic is stretched along its lines. Released, it shrinks by e along them and swells by
 nu e across them and in thickness, as the release of a uniaxial stress does. The active half of
 a beam is printed along the beam, the other half across it, the outermost row on either side
-(the shell) along it on both halves, and joints alternate both directions layer by layer.
+(the shell) along it on both halves, and joints alternate both directions layer by layer. A print
+may curl of its own besides: its top shrinks more than its bottom, whatever the direction.
 """
 
 import numpy as np
@@ -36,6 +37,7 @@ def printing(
     beam: NDArray[np.int64],
     along: Array,
     across: Array,
+    up: Array,
     top: NDArray[np.bool_],
 ) -> tuple[Array, Array, Array]:
     """Return the printing frame, released strain and printed-in stress of E bricks.
@@ -46,6 +48,7 @@ def printing(
         beam: (E,) the beam of each brick, -1 in a joint.
         along: (E,) place along the beam, 0 to 1.
         across: (E, Q) places of the brick's integration points across the section, 0 to 1.
+        up: (E, Q) their heights over the middle, in thicknesses.
         top: (E,) whether the brick lies in the top half.
 
     Returns:
@@ -72,6 +75,8 @@ def printing(
     kind = np.where(kind < 0, half[:, None], kind)
     kind[beam < 0] = kinds.index("joint")
 
+    # What it curls by of its own, as the release of a stress that is equal in both directions.
+    own = e.curl * up[..., None] * np.array([-1, -1, 2 * nu / (1 - nu)])
     start, end = grid.joints[grid.beams.T]
     angle = np.arctan2(*(end - start).T[::-1])
-    return np.where(beam < 0, 0.0, angle[beam]), strain[kind], stress[kind]
+    return np.where(beam < 0, 0.0, angle[beam]), strain[kind] + own, stress[kind]

@@ -6,6 +6,7 @@ from simulearn.grid.cleaning import clean
 from simulearn.grid.designs import Rules, draw, draw_valid
 from simulearn.grid.grid import Grid, Support
 from simulearn.grid.gridfile import grid_from_dict, grid_to_dict, read_grid, write_grid
+from simulearn.grid.kinds import KindDesign, Kinds, draw_kind
 from simulearn.grid.lattice import drop_beams, lattice
 from simulearn.grid.library import library, make
 from simulearn.grid.outline import CornerTopology, Outline, corner_topology, outline
@@ -16,6 +17,8 @@ __all__ = [
     "Checks",
     "CornerTopology",
     "Grid",
+    "KindDesign",
+    "Kinds",
     "Message",
     "Outline",
     "Rules",
@@ -26,6 +29,7 @@ __all__ = [
     "clean",
     "corner_topology",
     "draw",
+    "draw_kind",
     "draw_valid",
     "drop_beams",
     "errors_of",

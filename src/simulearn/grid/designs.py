@@ -4,11 +4,13 @@ The rules are those of the paper's authors; each is a parameter. A draw depends 
 its number only, so that any design of a set can be drawn again alone and on any machine.
 """
 
+from collections.abc import Callable
 from itertools import pairwise
 from math import cos, pi, sin, sqrt
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import AfterValidator, ConfigDict, Field
 from pydantic.dataclasses import dataclass
 
@@ -18,9 +20,11 @@ from simulearn.grid.grid import Grid
 from simulearn.grid.lattice import MOST_CELLS, drop_beams, lattice
 from simulearn.grid.outline import outline
 from simulearn.grid.validation import validate
-from simulearn.material import load_material
+from simulearn.material import Material, load_material
 
 MOST_REDRAWS = 1000
+
+Uniform = Callable[[], float]  # draws from [0, 1)
 
 
 def _rising(values: tuple[float, ...]) -> tuple[float, ...]:
@@ -78,9 +82,7 @@ def draw(rules: Rules, seed: int, k: int, redraw: int = 0) -> Grid:
         k: number of the design in the set.
         redraw: how often this design has been drawn before.
     """
-    source = np.random.SeedSequence(seed, spawn_key=(k, redraw))
-    # Uniform numbers in [0, 1) only: their bits are the same with every version of numpy.
-    uniform = np.random.Generator(np.random.Philox(source)).random
+    uniform = source(seed, k, redraw)
     least, most = rules.length
     plain = lattice(rules.cells, least + (most - least) * uniform(), rules.material)
     joints = plain.joints.copy()
@@ -92,12 +94,7 @@ def draw(rules: Rules, seed: int, k: int, redraw: int = 0) -> Grid:
     # Sines differ in their last bit between machines; a nanometre hides it.
     joints = joints.round(6)
 
-    ratios = np.zeros(len(plain.beams))
-    for beam in range(len(ratios)):
-        active, size, half = uniform(), uniform(), uniform()
-        if active >= rules.inactive:
-            ratio = rules.ratios[int(size * len(rules.ratios))]
-            ratios[beam] = ratio if half < rules.top else -ratio
+    ratios = drawn_ratios(rules, len(plain.beams), uniform)
     grid = Grid(joints, plain.beams, ratios, plain.fixed, rules.material)
     if rules.removed[1]:
         least, most = rules.removed
@@ -108,7 +105,7 @@ def draw(rules: Rules, seed: int, k: int, redraw: int = 0) -> Grid:
             grid = clean(grid)[0]
         except InputError:
             return grid  # nothing sound is left
-    return _lengthened(grid, rules)
+    return lengthened(grid, rules, load_material(rules.material))
 
 
 def draw_valid(rules: Rules, seed: int, k: int) -> tuple[Grid, int]:
@@ -128,10 +125,28 @@ def draw_valid(rules: Rules, seed: int, k: int) -> tuple[Grid, int]:
     )
 
 
-def _lengthened(grid: Grid, rules: Rules) -> Grid:
+def source(seed: int, k: int, redraw: int) -> Uniform:
+    """Return what draws the numbers of design k from [0, 1)."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(k, redraw))
+    # Uniform numbers in [0, 1) only: their bits are the same with every version of numpy.
+    return np.random.Generator(np.random.Philox(sequence)).random
+
+
+def drawn_ratios(rules: Rules, beams: int, uniform: Uniform) -> NDArray[np.float64]:
+    """Return random signed ratios (beams,)."""
+    ratios = np.zeros(beams)
+    for beam in range(beams):
+        active, size, half = uniform(), uniform(), uniform()
+        if active >= rules.inactive:
+            ratio = rules.ratios[int(size * len(rules.ratios))]
+            ratios[beam] = ratio if half < rules.top else -ratio
+    return ratios
+
+
+def lengthened(grid: Grid, rules: Rules, material: Material) -> Grid:
     """Return the grid with actuators that are long enough; where none can be, without."""
     try:
-        shape = outline(grid, load_material(rules.material).section)
+        shape = outline(grid, material.section)
     except InputError:
         return grid  # no lengths to go by, and not valid anyhow
     # The middle of a joint's side lies on the axis.

@@ -90,7 +90,7 @@ def impossible(lengths: Numbers, material: Material) -> NDArray[np.bool_]:
 def cord_length(material: Material) -> float:
     """Return the length (mm) from which on a beam hangs like a cord; infinite without weight."""
     return CORD * _bending_length(
-        material.section, material.law.modulus, material.gravity.body_force
+        material.section, material.law.stiffness, material.gravity.body_force
     )
 
 

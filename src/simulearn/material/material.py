@@ -42,12 +42,23 @@ class Section(_Data):
         return self
 
 
-class MarlowData(_Data):
+class _Law(_Data):
+    """What every law has: `scale` multiplies all its stresses."""
+
+    poisson: Poisson
+    modulus: Positive
+    scale: Positive = 1.0
+
+    @property
+    def stiffness(self) -> float:
+        """Modulus with its scale, MPa."""
+        return self.modulus * self.scale
+
+
+class MarlowData(_Law):
     """Uniaxial test as (nominal strain, nominal stress in MPa) pairs, rising in both."""
 
     kind: Literal["marlow"]
-    poisson: Poisson
-    modulus: Positive
     table: tuple[tuple[Positive, Positive], ...] = Field(min_length=2)
 
     @model_validator(mode="after")
@@ -58,22 +69,26 @@ class MarlowData(_Data):
         return self
 
 
-class ElasticData(_Data):
+class ElasticData(_Law):
     """Neo-Hookean or St Venant-Kirchhoff law by Young's modulus (MPa) and Poisson ratio."""
 
     kind: Literal["neo-hookean", "st-venant-kirchhoff"]
-    poisson: Poisson
-    modulus: Positive
 
 
 class Shrinkage(_Data):
-    """Released strains of active half and shell, and the printed-in stresses, MPa."""
+    """Released strains of active half and shell, and the printed-in stresses, MPa.
+
+    `curl` is what a print curls by of its own: by so much more strain its top shrinks than its
+    bottom, in both directions of the plane, linear in between. A beam without an actuator then
+    bends, upwards where it is positive, by about `curl` over the thickness.
+    """
 
     active: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
     shell: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
     stress_active: Positive
     stress_passive: NotNegative
     stress_joint: NotNegative
+    curl: Annotated[float, Field(gt=-0.5, lt=0.5, allow_inf_nan=False)] = 0.0
 
     @property
     def passive(self) -> float:
@@ -126,6 +141,18 @@ class Creep(_Data):
     amplitude: NotNegative
     exponent: Annotated[float, Field(gt=0, le=1)]
     hold: Positive
+
+
+class Scatter(_Data):
+    """How prints of one design differ: relative standard deviations of all released strains.
+
+    Attributes:
+        print: from print to print, the same for all beams of one.
+        beam: from beam to beam of one print.
+    """
+
+    print: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    beam: Annotated[float, Field(ge=0, le=0.5)] = 0.0
 
 
 class Bath(_Data):
@@ -198,6 +225,7 @@ class Material(_Data):
     bath: Bath
     print: Print
     limits: Limits
+    scatter: Scatter = Scatter()
 
     @cached_property
     def digest(self) -> str:

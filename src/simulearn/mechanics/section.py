@@ -25,7 +25,7 @@ GAUSS = (0.5 - 0.5 / np.sqrt(3), 0.5 + 0.5 / np.sqrt(3))
 def first_guess(material: Material) -> SectionModel:
     """Return the model of a uniform section, from which fitting begins."""
     width, thick = material.section.width, material.section.thickness
-    modulus, area = material.law.modulus, width * thick
+    modulus, area = material.law.stiffness, width * thick
     shear = SHEAR * modulus * area
     torsion = TORSION * modulus * width * thick**3
     bending = [modulus * width * thick**3 / 12, modulus * thick * width**3 / 12]

@@ -73,8 +73,8 @@ def orthotropic(law: ElasticData, growth: Array, release: float) -> Array:
     Returns:
         D1111, D1122, D2222, D1133, D2233, D3333, D1212, D1313, D2323.
     """
-    shear = law.modulus / (2 * (1 + law.poisson))
-    lame = law.modulus * law.poisson / ((1 + law.poisson) * (1 - 2 * law.poisson))
+    shear = law.stiffness / (2 * (1 + law.poisson))
+    lame = law.stiffness * law.poisson / ((1 + law.poisson) * (1 - 2 * law.poisson))
     g = 1 + release * growth
     D = (lame + 2 * shear * np.eye(3)) * g.prod() / np.outer(g, g) ** 2
     G = shear * g.prod() / np.outer(g, g) ** 2

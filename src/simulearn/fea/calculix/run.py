@@ -105,7 +105,7 @@ def _data(material: Material, law: Kind | None) -> MarlowData | ElasticData:
         return material.law
     if law == "marlow":
         raise InputError(f"material {material.name} has no test table for a marlow law")
-    return ElasticData(kind=law, poisson=material.law.poisson, modulus=material.law.modulus)
+    return ElasticData(kind=law, poisson=material.law.poisson, modulus=material.law.stiffness)
 
 
 def _grown(
