@@ -75,8 +75,16 @@ def cuts(ratio: float, slabs: int) -> Array:
     return np.concatenate([first, middle[1:-1], 1 - first[::-1]])
 
 
-def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
+def mesh(
+    grid: Grid, material: Material, layout: Layout = COARSE, factors: Array | None = None
+) -> Solid:
     """Return the solid of a grid, its fixed joint at the origin.
+
+    Args:
+        grid: the design.
+        material: its material system.
+        layout: how finely it is meshed.
+        factors: (B,) by which the released strains of beams differ from the material's.
 
     Raises:
         InputError: a joint has no outline.
@@ -146,6 +154,7 @@ def mesh(grid: Grid, material: Material, layout: Layout = COARSE) -> Solid:
         across=across[strip][:, None] + width[strip][:, None] * points[1],
         up=heights / section.thickness,
         top=layer >= layout.layers,
+        factors=factors,
     )
     # Scikit-fem numbers the vertices first, so that a vertex is its own node.
     corner = joints[:, [0, -1, -1, 0], [0, 0, -1, -1]]  # (J, 4, up)

@@ -39,6 +39,7 @@ def printing(
     across: Array,
     up: Array,
     top: NDArray[np.bool_],
+    factors: NDArray[np.float64] | None = None,
 ) -> tuple[Array, Array, Array]:
     """Return the printing frame, released strain and printed-in stress of E bricks.
 
@@ -50,6 +51,7 @@ def printing(
         across: (E, Q) places of the brick's integration points across the section, 0 to 1.
         up: (E, Q) their heights over the middle, in thicknesses.
         top: (E,) whether the brick lies in the top half.
+        factors: (B,) by which the released strains of beams differ from the material's.
 
     Returns:
         angle (E,) of the beam from +x; strain (E, Q, 3) along, across and in thickness; printed-in
@@ -79,4 +81,7 @@ def printing(
     own = e.curl * up[..., None] * np.array([-1, -1, 2 * nu / (1 - nu)])
     start, end = grid.joints[grid.beams.T]
     angle = np.arctan2(*(end - start).T[::-1])
-    return np.where(beam < 0, 0.0, angle[beam]), strain[kind] + own, stress[kind]
+    growth = strain[kind] + own
+    if factors is not None:
+        growth *= np.where(beam < 0, 1.0, factors[beam])[:, None, None]
+    return np.where(beam < 0, 0.0, angle[beam]), growth, stress[kind]

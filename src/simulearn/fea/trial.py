@@ -95,6 +95,7 @@ def simulate_grid(
     control: Control = Control(),
     progress: Progress | None = None,
     cancel: Cancel | None = None,
+    factors: Array | None = None,
 ) -> Trial:
     """Simulate a grid in its bath.
 
@@ -105,6 +106,7 @@ def simulate_grid(
         control: convergence settings.
         progress: called with (frames done, frames in all) after each frame.
         cancel: token that stops the simulation within an iteration.
+        factors: (B,) by which the released strains of beams differ from the material's.
 
     Raises:
         InputError: the grid cannot be meshed.
@@ -113,7 +115,7 @@ def simulate_grid(
     """
     begun = time.perf_counter()
     problem = EquilibriumProblem(
-        mesh(grid, material, layout),
+        mesh(grid, material, layout, factors),
         law_of(material.law),
         material.gravity.body_force,
         control=control,
