@@ -1,0 +1,1 @@
+"""Fitting a material to measured prints."""

@@ -1,0 +1,1 @@
+"""Comparing a measured print with the simulation."""
