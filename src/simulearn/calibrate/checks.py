@@ -76,7 +76,9 @@ def _impossible(
             why = f"it seems to be in {unit}; write {value * mm:.4g} (mm)"
             break
     else:
-        why = "is the strip another one?" if key == "before" else "a chord is shorter than its strip"
+        why = (
+            "is the strip another one?" if key == "before" else "a chord is shorter than its strip"
+        )
     text = f"{where} is {value:g} mm, but the strip was printed {length:g} mm long; {why}"
     return Message("calibration-value", where, text)
 
@@ -145,7 +147,9 @@ def without_outliers(form: Form) -> tuple[Form, list[Message]]:
     messages = []
     for (name, key), row in away.items():
         rise = form.strips[name].rise
-        high = np.nanmedian(np.abs([np.nan if v is None else v for v in rise])) if any(rise) else 0.0
+        high = (
+            np.nanmedian(np.abs([np.nan if v is None else v for v in rise])) if any(rise) else 0.0
+        )
         allowed = OUTLIER * sd + (0.0 if key == "before" else SCATTER * high)
         far = np.flatnonzero(np.abs(np.nan_to_num(row)) > allowed).tolist()
         for k in far:

@@ -83,7 +83,8 @@ class Fit:
         differences: measured and simulated; `before` there is of the base material.
         noise: how readings differ.
         size: printed over designed lengths, with its interval.
-        singular: of the readings' sensitivity to the numbers, in standard deviations of each before.
+        singular: singular values of the readings' sensitivity to the numbers, both in their
+            standard deviations (of a number: before the plate).
         covariance: (P, P) of the numbers.
         spread: factor on all intervals for what no material of the family explains.
         messages: warnings and notes.
@@ -154,7 +155,10 @@ def _result(form: Form, base: Material, search: Search, messages: list[Message])
     sds = search.deviations()
     shares = sds / search.prior
     widths = reach * np.minimum(sds * spread, np.maximum(sds, search.prior))
-    low, high = np.maximum(search.at - widths, search.low), np.minimum(search.at + widths, search.high)
+    low, high = (
+        np.maximum(search.at - widths, search.low),
+        np.minimum(search.at + widths, search.high),
+    )
     estimates = tuple(
         Estimate(
             one.name,

@@ -24,7 +24,7 @@ from simulearn.errors import InputError
 from simulearn.files import read_text
 from simulearn.grid import Grid
 
-FORMAT = "simulearn-calibration/1"
+FORMAT: Literal["simulearn-calibration/1"] = "simulearn-calibration/1"
 MEASURED = ("before", "chord", "rise")  # what is measured of a strip, mm
 
 
@@ -126,7 +126,7 @@ class Form(_Data):
         strips: by their names.
     """
 
-    format: Literal["simulearn-calibration/1"]
+    format: Literal["simulearn-calibration/1"] = FORMAT
     material: str = "pla-hot-water"
     printer: str = ""
     measured: str = ""

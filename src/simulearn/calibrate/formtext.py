@@ -12,17 +12,17 @@ HEAD = """\
 # Calibration form. Fill in what stands between the quotes; what stays "" is not used.
 # Then: simulearn calibrate fit THIS_FILE -o my-material.toml
 #
-# All in mm. Each list has one value for every repeat of the strip, in the order of the labels in the
-# comment above it. Write the labels on the strips (top side, held end) before you take them off the
-# bed: the map shows which is which. Cut off the brim.
+# All in mm. Each list has one value for every repeat of the strip, in the order of the labels in
+# the comment above it. Write the labels on the strips (top side, held end) before you take them
+# off the bed: the map shows which is which. Cut off the brim.
 #
 #   before   before the bath: straight length from end face to end face.
-#   In the bath: hold each strip by the end that is black on the map, level, the side up that was up
-#   when it was printed, all else free in the water. Take it out when it has become solid again.
-#   chord    lay the strip on its side on paper, and a straight edge across the two tips of its hollow
-#            side: the distance between these tips.
-#   rise     the largest gap between the straight edge and the strip. Plus if it is hollow on the side
-#            that was up (its ends bend up), minus if it is hollow on the other side.
+#   In the bath: hold each strip by the end that is black on the map, level, the side up that was
+#   up when it was printed, all else free in the water. Let it become solid before you let go.
+#   chord    lay the strip on its side on paper, and a straight edge across the two tips of its
+#            hollow side: the distance between these tips.
+#   rise     the largest gap between the straight edge and the strip. Plus if it is hollow on the
+#            side that was up (its ends bend up), minus if it is hollow on the other side.
 #
 #           <--------- chord --------->
 #        tip===========================tip   straight edge
@@ -42,9 +42,9 @@ def form_text(form: Form) -> str:
     lines = [
         HEAD,
         f'format = "{form.format}"',
-        f"material = {_quoted(form.material)}   # the base: what the plate was made with",
-        f"printer = {_quoted(form.printer)}",
-        f"measured = {_quoted(form.measured)}   # when, which filament, which bath: a note",
+        f"material = {quoted(form.material)}   # the base: what the plate was made with",
+        f"printer = {quoted(form.printer)}",
+        f"measured = {quoted(form.measured)}   # when, which filament, which bath: a note",
         "",
         "[section]   # of the strips before the bath by caliper, mean of a few places",
         f"width = {_value(form.section.width)}       # printed as {section.width:g}",
@@ -83,10 +83,10 @@ def _list(values: Sequence[float | str | None]) -> str:
 def _value(value: float | str | None) -> str:
     if value is None:
         return '""'
-    return _quoted(value) if isinstance(value, str) else repr(float(value))
+    return quoted(value) if isinstance(value, str) else repr(float(value))
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
     """Return a text as a TOML basic string."""
     escaped = "".join(
         f"\\u{ord(c):04x}" if ord(c) < 32 or ord(c) == 127 else c

@@ -1,26 +1,31 @@
 """The fitted material as a file: the base's own text and comments, with numbers put in place.
 
-The base's file is kept line by line, since its comments say where its numbers come from. A line with
-a number that was fitted or not told has its own comment: value, interval, base.
+The base's file is kept line by line, since its comments say where its numbers come from. A line
+with a number that was fitted or not told has a comment of its own: value, interval, base.
 """
 
 import re
+import tomllib
 from collections.abc import Iterator
 from datetime import date
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from simulearn.calibrate.fit import Estimate, Fit
+from simulearn.calibrate.formtext import quoted
 from simulearn.errors import InputError
 from simulearn.fea import simulate_grid
 from simulearn.fea.bar import bar, curvature
 from simulearn.files import read_text, replacing
-from simulearn.material import Material, read_material
+from simulearn.material import Material
+from simulearn.material.family import member_of
 from simulearn.material.material import HERE, is_name
 
 DIGITS = 5
 HEADER = re.compile(r"^\s*\[([\w.]+)\]")
 KEY = re.compile(r"^(\s*)([A-Za-z_]\w*)(\s*=\s*)([^#]*?)(\s*)(#.*)?$")
-# Where each fitted number stands in a material file, and what the number there is over the fitted one.
+# Where each fitted number stands in a material file.
 PLACES = {
     "strain": ("shrinkage", "active"),
     "shell": ("shrinkage", "shell"),
@@ -29,6 +34,10 @@ PLACES = {
     "curl": ("shrinkage", "curl"),
     "load": ("law", "scale"),
 }
+CALIBRATED = ", calibrated"
+NEAR = 1e-3  # of a number, which is written with five digits
+
+Values = dict[tuple[str, str], tuple[float | str, str]]  # by section and key, with a comment
 
 
 def material_text(fit: Fit, name: str, source: str = "", today: date | None = None) -> str:
@@ -39,10 +48,15 @@ def material_text(fit: Fit, name: str, source: str = "", today: date | None = No
         name: of the new material.
         source: the form's file, for the comments.
         today: the date for the comments.
+
+    Raises:
+        InputError: the base's file is written in a way that cannot be edited line by line.
     """
     base, new = fit.base, fit.material
-    text = base_text(fit.form.material)
-    values: dict[tuple[str, str], tuple[float, str]] = {}
+    values: Values = {
+        ("", "name"): (name, "fitted"),
+        ("", "title"): (f"{base.title.removesuffix(CALIBRATED)}{CALIBRATED}", ""),
+    }
     for key in ("width", "thickness"):
         if (measured := getattr(fit.form.section, key)) is not None:
             values["section", key] = measured, "by caliper"
@@ -56,9 +70,10 @@ def material_text(fit: Fit, name: str, source: str = "", today: date | None = No
     values["calibration", "curvature"] = float(f"{bends:.4g}"), "simulated with what was fitted"
     if any(record.repeats > 2 for record in fit.form.strips.values()):
         values["scatter", "beam"] = _scatter(fit)
-    lines = list(_replaced(text.splitlines(), values))
-    lines = [_named(line, name, f"{base.title}, calibrated") for line in lines]
-    return "\n".join([*_head(fit, source, today or date.today()), "", *lines]) + "\n"
+    lines = _replaced(base_text(fit.form.material).splitlines(), values)
+    text = "\n".join([*_head(fit, source, today or date.today()), "", *lines]) + "\n"
+    _check(text, new, fit.form.material)
+    return text
 
 
 def write_material(fit: Fit, path: Path, source: str = "") -> None:
@@ -70,7 +85,6 @@ def write_material(fit: Fit, path: Path, source: str = "") -> None:
     text = material_text(fit, path.stem, source)
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-        read_material(temporary)  # what cannot be read again is not written
 
 
 def base_text(material: str) -> str:
@@ -82,7 +96,9 @@ def _comment(one: Estimate) -> str:
     if one.told == "not":
         return f"not told by the strips, the base's; {one.low:.3f} to {one.high:.3f} is likely"
     ratio = "the base's" if one.name in ("strain", "load") else "the active strain"
-    return f"{one.name} {one.value:.3f} ({one.low:.3f} to {one.high:.3f}) of {ratio}, told {one.told}"
+    return (
+        f"{one.name} {one.value:.3f} ({one.low:.3f} to {one.high:.3f}) of {ratio}, told {one.told}"
+    )
 
 
 def _scatter(fit: Fit) -> tuple[float, str]:
@@ -102,9 +118,9 @@ def _head(fit: Fit, source: str, today: date) -> Iterator[str]:
     strips = ", ".join(f"{one.count} {one.strip}" for one in used)
     yield f"# Strips: {strips}. Readings differ by {fit.noise.reading:.2f} mm."
     size, low, high = fit.size
-    yield f"# Printed {size:.4f} times as long as designed ({low:.4f} to {high:.4f}); in no number."
-    yield "# In parentheses: intervals of 90 %. The load (weight over stiffness, with creep) is told by"
-    yield "# shapes; density, creep and form of the law are the base's."
+    yield f"# Printed {size:.4f} times as long as designed ({low:.4f} to {high:.4f})."
+    yield "# In parentheses: intervals of 90 %. Shapes tell the load (weight over stiffness, with"
+    yield "# creep); density, creep and form of the law are the base's."
     for message in fit.messages:
         yield f"# {message.code}: {_line(message.message)}"
 
@@ -114,35 +130,50 @@ def _line(text: str) -> str:
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 
-def _replaced(
-    lines: list[str], values: dict[tuple[str, str], tuple[float, str]]
-) -> Iterator[str]:
-    """Yield lines of a TOML file with values by section and key; missing ones are added."""
+def _replaced(lines: list[str], values: Values) -> list[str]:
+    """Return lines of a TOML file with values by section and key; missing ones are added."""
     left = dict(values)
-    section, kept = "", []
+    section = ""
+    kept: list[str] = []
     for line in lines:
         if header := HEADER.match(line):
-            kept += _added(section, left)
+            kept = _with_added(kept, section, left)
             section = header[1]
         elif (found := KEY.match(line)) and (section, found[2]) in left:
-            value, words = left.pop((section, found[2]))
-            line = f"{found[1]}{found[2]}{found[3]}{value!r}   # {words}"
+            line = found[1] + _entry(found[2], *left.pop((section, found[2])))
         kept.append(line)
-    kept += _added(section, left)
-    for other in dict.fromkeys(section for section, _ in left):
-        kept += ["", f"[{other}]", *_added(other, left)]
-    yield from kept
+    kept = _with_added(kept, section, left)
+    for other in dict.fromkeys([section for section, _ in left]):
+        kept = _with_added([*kept, "", f"[{other}]"], other, left)
+    return kept
 
 
-def _added(section: str, left: dict[tuple[str, str], tuple[float, str]]) -> list[str]:
-    """Return lines for what a section does not have yet, and take it from what is left."""
+def _with_added(lines: list[str], section: str, left: Values) -> list[str]:
+    """Return lines with what is left of a section at their end, before the blank ones."""
     mine = [place for place in left if place[0] == section]
-    return [f"{key} = {value!r}   # {words}" for _, key in mine for value, words in [left.pop((section, key))]]
+    end = len(lines)
+    while end and not lines[end - 1].strip():
+        end -= 1
+    return [*lines[:end], *(_entry(place[1], *left.pop(place)) for place in mine), *lines[end:]]
 
 
-def _named(line: str, name: str, title: str) -> str:
-    found = KEY.match(line)
-    if found and found[2] in ("name", "title") and not found[1]:
-        text = name if found[2] == "name" else title
-        return f'{found[2]} = "{text}"'
-    return line
+def _entry(key: str, value: float | str, words: str) -> str:
+    entry = f"{key} = {quoted(value) if isinstance(value, str) else repr(value)}"
+    return f"{entry:26} # {words}" if words else entry
+
+
+def _check(text: str, meant: Material, base: str) -> None:
+    """Make sure that a text is the material that was meant."""
+    try:
+        found = Material.model_validate(tomllib.loads(text))
+        pairs = zip(member_of(found), member_of(meant), strict=True)
+        if all(abs(a - b) <= NEAR * max(abs(b), 1e-6) for a, b in pairs):
+            return
+    except (tomllib.TOMLDecodeError, ValidationError):
+        pass
+    raise InputError(
+        f"{base}: cannot be edited line by line; write each section as [shrinkage] with one key a "
+        "line, as the materials that come along do",
+        "calibration-base",
+        base,
+    )

@@ -4,6 +4,7 @@ The tips are the middles of the edges of the two outer end faces, on the top or 
 line between is known at its tips and at start, middle and end of each beam, and smooth between.
 """
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -64,7 +65,7 @@ def read_off(prints: Prints, x: Numbers, half: float, rises: bool) -> Numbers:
     if not there.any():
         return read
     bent = CubicSpline(at, line[there][..., [0, 2]], axis=1)
-    dense = np.unique(np.concatenate([np.linspace(a, b, FINE) for a, b in zip(at, at[1:], strict=False)]))
+    dense = np.unique(np.concatenate([np.linspace(a, b, FINE) for a, b in pairwise(at.tolist())]))
     points = bent(dense)  # (T, M, 2)
     along = points[:, -1] - points[:, 0]
     chord = np.linalg.norm(along, axis=-1)

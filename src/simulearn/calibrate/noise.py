@@ -6,8 +6,8 @@ moves chord and rise together, by g t, where g is their derivative by the strain
 
     covariance of (chord, rise) of one strip = s^2 I + t^2 g g'
 
-Both are estimated by the restricted likelihood of the repeats' deviations from their means (Patterson
-and Thompson, Biometrika 58, 1971), with what a ruler reads for a prior of s.
+Both are estimated by the restricted likelihood of the repeats' deviations from their means
+(Patterson and Thompson, Biometrika 58, 1971), with what a ruler reads for a prior of s.
 """
 
 from typing import NamedTuple
@@ -55,9 +55,7 @@ class Noise(NamedTuple):
         return np.diag(self.reading**2 / many) + common
 
 
-def estimate(
-    readings: list[Numbers], slopes: list[Numbers], lengths: list[Numbers]
-) -> Noise:
+def estimate(readings: list[Numbers], slopes: list[Numbers], lengths: list[Numbers]) -> Noise:
     """Return how readings differ.
 
     Args:
@@ -74,7 +72,10 @@ def estimate(
     for row in lengths:
         known = row[np.isfinite(row)]
         if len(known) > 1:
-            free, squares = free + len(known) - 1, squares + float(((known - known.mean()) ** 2).sum())
+            free, squares = (
+                free + len(known) - 1,
+                squares + float(((known - known.mean()) ** 2).sum()),
+            )
     freedom = LIKELY + free + 2 * sum(len(one) - 1 for one, _ in spread)
 
     def cost(values: Numbers) -> float:
@@ -94,7 +95,9 @@ def estimate(
     def profile(t: float) -> tuple[float, float]:
         """Return the least cost at a scatter, and the logarithm of s there."""
         found = minimize_scalar(
-            lambda x: cost(np.array([x, t])), bounds=(LOG_RULER - 4, LOG_RULER + 4), method="bounded"
+            lambda x: cost(np.array([x, t])),
+            bounds=(LOG_RULER - 4, LOG_RULER + 4),
+            method="bounded",
         )
         return float(found.fun), float(found.x)
 

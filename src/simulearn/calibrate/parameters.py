@@ -1,8 +1,8 @@
 """What is fitted: numbers of the family, what is held likely before a print, and their material.
 
 Shapes tell weight over stiffness only, not each alone; the fitted material has the base's density
-and a law that is scaled. In the last frame creep by phi is the same as 1 + phi times the weight (see
-`fea.trial`), so creep stays the base's, and `load` stands for both.
+and a law that is scaled. In the last frame creep by phi is the same as 1 + phi times the weight
+(see `fea.trial`), so creep stays the base's, and `load` stands for both.
 """
 
 from typing import NamedTuple
@@ -44,10 +44,11 @@ WORDS = {
     "load": "weight over stiffness, with creep, over the base's",
 }
 STEPS = {"strain": 0.02, "passive": 0.04, "joint": 0.04, "shell": 0.04, "curl": 0.02, "load": 0.05}
+FAMILY = Family()
 LEAST_LOAD = 0.02  # a law cannot be infinitely stiff
 
 
-def parameters(base: Material, family: Family = Family()) -> tuple[Parameter, ...]:
+def parameters(base: Material, family: Family = FAMILY) -> tuple[Parameter, ...]:
     """Return what is fitted to a plate of a base material.
 
     Args:

@@ -10,7 +10,7 @@ so that none is taken for another one.
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from simulearn.calibrate.form import FORMAT, Form, StripRecord
+from simulearn.calibrate.form import Form, StripRecord
 from simulearn.errors import InputError
 from simulearn.fabricate import Job, Printer, prepare
 from simulearn.grid import Grid
@@ -124,5 +124,5 @@ def make_plate(printer: Printer, material: str = "pla-hot-water", repeats: int =
                 "repeats",
             ) from error
         raise
-    form = Form(format=FORMAT, material=material, printer=printer.name, strips=strips)
+    form = Form(material=material, printer=printer.name, strips=strips)
     return Plate(job, form, {k: r.length(base.section.width) for k, r in strips.items()})

@@ -1,8 +1,8 @@
 """The search for the numbers that fit readings best: least squares with what is likely before.
 
-A difference counts over its standard deviation, which the repeats tell (see `noise`). A number counts
-by how far it lies from the base's, over how far materials lie from one another. The last number is
-the size: printed over designed lengths.
+A difference counts over its standard deviation, which the repeats tell (see `noise`). A number
+counts by how far it lies from the base's, over how far materials lie from one another. The last
+number is the size: printed over designed lengths.
 """
 
 import numpy as np
