@@ -79,8 +79,9 @@ def _shapes(grids: Sequence[Grid], section: Section) -> shapely.Geometry:
 def _rooms(bed: Bed, margins: Sequence[float] = ()) -> Iterator[tuple[Array, Array]]:
     """Yield rectangles (low, high; mm) into which grids are packed, one after the other.
 
-    The first is the bed itself within its margins, where they lie amid it. Grids that would there leave a round bed or
-    meet an excluded zone are packed into what lies inside of it, or beside the zones.
+    The first is the bed itself within its margins, where they lie amid it. Grids that would there
+    leave a round bed or meet an excluded zone are packed into what lies inside of it, or beside the
+    zones.
     """
     low, high = np.array(bed.low), np.array(bed.high)
     for margin in (*margins, 0.0):
