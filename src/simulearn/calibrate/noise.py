@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 
 Numbers = NDArray[np.float64]
@@ -23,7 +22,9 @@ LOG_RULER = float(np.log(RULER))
 DOUBT = 0.5  # standard deviation of its logarithm
 LIKELY = 4.0  # as many degrees of freedom is this prior worth
 MOST_SCATTER = 0.3
-POINTS = 40  # scatters that are tried
+SPAN, READINGS = 3.0, 241  # of logarithms of reading errors that are tried
+POINTS = 60  # scatters that are tried
+TINY = 1e-12
 WITHIN = float(chi2.ppf(0.9, 1)) / 2  # of the logarithm of likelihood, for an interval of 90 %
 
 
@@ -78,32 +79,24 @@ def estimate(readings: list[Numbers], slopes: list[Numbers], lengths: list[Numbe
             )
     freedom = LIKELY + free + 2 * sum(len(one) - 1 for one, _ in spread)
 
-    def cost(values: Numbers) -> float:
-        """Return minus the logarithm of the likelihood, and of the prior."""
-        s, t = np.exp(values[0]), values[1]
-        total = ((values[0] - LOG_RULER) / DOUBT) ** 2 / 2
-        total += free * values[0] + squares / (2 * s**2)
-        for one, slope in spread:
-            many, g = len(one) - 1, float(slope @ slope)
-            # The eigenvalues of s^2 I + t^2 g g'.
-            total += many * (values[0] + np.log(s**2 + t**2 * g) / 2)
-            along = float(((one @ slope) ** 2).sum()) / g if g else 0.0
-            across = float((one**2).sum()) - along
-            total += along / (2 * (s**2 + t**2 * g)) + across / (2 * s**2)
-        return float(total)
+    # Of each strip: repeats less one, g'g, and squares of the deviations along g and across it.
+    told = []
+    for one, slope in spread:
+        g = float(slope @ slope)
+        along = float(((one @ slope) ** 2).sum()) / max(g, TINY)
+        told.append((len(one) - 1, g, along, float((one**2).sum()) - along))
+    many, g, along, across = np.array(told).reshape(-1, 4).T
 
-    def profile(t: float) -> tuple[float, float]:
-        """Return the least cost at a scatter, and the logarithm of s there."""
-        found = minimize_scalar(
-            lambda x: cost(np.array([x, t])),
-            bounds=(LOG_RULER - 4, LOG_RULER + 4),
-            method="bounded",
-        )
-        return float(found.fun), float(found.x)
-
+    logs = LOG_RULER + np.linspace(-SPAN, SPAN, READINGS)
     scatters = np.append(0.0, np.geomspace(1e-3, MOST_SCATTER, POINTS))
-    costs, logs = np.array([profile(float(t)) for t in scatters]).T
-    best = int(costs.argmin())
-    likely = scatters[costs <= costs[best] + WITHIN]
-    low, high = (float(likely.min()), float(likely.max())) if spread else (0.0, MOST_SCATTER)
-    return Noise(float(np.exp(logs[best])), float(scatters[best]), low, high, freedom)
+    s2, t2 = np.exp(2 * logs)[:, None, None], scatters[:, None] ** 2
+    # The eigenvalues of s^2 I + t^2 g g'; minus the logarithm of likelihood and prior.
+    wide = s2 + t2 * g
+    cost = (many * np.log(wide * s2) + along / wide + across / s2).sum(axis=2) / 2
+    cost += (free * logs + squares * np.exp(-2 * logs) / 2)[:, None]
+    cost += (((logs - LOG_RULER) / DOUBT) ** 2 / 2)[:, None]
+
+    row, best = np.unravel_index(int(cost.argmin()), cost.shape)
+    likely = scatters[cost.min(axis=0) <= cost.min() + WITHIN]
+    low, high = (float(likely.min()), float(likely.max())) if told else (0.0, MOST_SCATTER)
+    return Noise(float(np.exp(logs[row])), float(scatters[best]), low, high, freedom)

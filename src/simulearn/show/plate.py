@@ -113,7 +113,7 @@ def _measuring(ax: Axes) -> None:
             beside,
             -12,
             "left",
-            "rise is + where the hollow side was up\nin the print, and - where down",
+            "rise is + where the hollow\nside was up in the print,\nand - where it was down",
         ),
         (-beside, -12, "right", "the strip lies\non its side"),
     ):
