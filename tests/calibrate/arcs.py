@@ -1,10 +1,9 @@
-"""Strips that are arcs by formula, in place of simulated ones: a fit does not care who simulates."""
+"""Strips that are arcs by formula, in place of simulated ones: the fit does not know."""
 
 import numpy as np
 
-from simulearn.calibrate.measuring import read_off  # noqa: F401
+from simulearn.calibrate import Form
 from simulearn.calibrate.plate import records
-from simulearn.calibrate.form import Form
 from simulearn.material.family import member_of
 
 POISSON = 0.4
@@ -17,15 +16,19 @@ def arc(record, material, stretch=1.0):
     ratio = float(np.mean(record.actuators))
     beams = sum(record.beams) * stretch
     joints = WIDTH * len(record.beams)
-    along = (beams - joints) * it.strain * (
-        -0.5 * abs(ratio) - 0.3 * it.shell + POISSON * it.passive * (1 - abs(ratio) / 2)
+    along = (
+        (beams - joints)
+        * it.strain
+        * (-0.5 * abs(ratio) - 0.3 * it.shell + POISSON * it.passive * (1 - abs(ratio) / 2))
     )
     length = beams + WIDTH + along - (joints + WIDTH) * it.strain * it.joint
     bend = it.strain * (1.2 * ratio * (1 + 0.3 * it.passive) + it.curl) / height
     bend -= it.weight * (1 + it.creep) * 2.2 * length**2 / height**3
     turn = bend * length / 2
     # sin(x) / x of numpy has a pi in it.
-    return np.array([length * np.sinc(turn / np.pi), length / 2 * np.sin(turn / 2) * np.sinc(turn / 2 / np.pi)])
+    return np.array(
+        [length * np.sinc(turn / np.pi), length / 2 * np.sin(turn / 2) * np.sinc(turn / 2 / np.pi)]
+    )
 
 
 def simulated(record, materials, rises, stretch=1.0):
