@@ -81,8 +81,8 @@ def main() -> None:
     report.say(
         f"{args.members} materials were drawn from the family (`material.Family`), with the "
         f"section of the base. Their strips were simulated, {args.repeats} repeats each, and read "
-        f"with a noise of {args.noise:g} mm on every value. Materials, readings and predictions are all "
-        "of one simulator: this is how well a fit does where the physics is right."
+        f"with a noise of {args.noise:g} mm on every value. Materials, readings and predictions "
+        "are all of one simulator: this is how well a fit does where the physics is right."
     )
     rows = []
     inside = np.array(

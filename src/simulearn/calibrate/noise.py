@@ -82,9 +82,9 @@ def estimate(readings: list[Numbers], slopes: list[Numbers], lengths: list[Numbe
     # Of each strip: repeats less one, g'g, and squares of the deviations along g and across it.
     found = []
     for one, slope in spread:
-        g = float(slope @ slope)
-        along = float(((one @ slope) ** 2).sum()) / max(g, TINY)
-        found.append((len(one) - 1, g, along, float((one**2).sum()) - along))
+        size_of = float(slope @ slope)
+        on_slope = float(((one @ slope) ** 2).sum()) / max(size_of, TINY)
+        found.append((len(one) - 1, size_of, on_slope, float((one**2).sum()) - on_slope))
     many, size, along, across = np.array(found).reshape(-1, 4).T
 
     logs = LOG_RULER + np.linspace(-SPAN, SPAN, READINGS)
