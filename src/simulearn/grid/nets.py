@@ -36,7 +36,7 @@ def chain(uniform: Uniform) -> Net:
     count, turn = _among(uniform, 1, 4), (uniform() - 0.5) * 1.6
     at, angle, joints = np.zeros(2), 0.0, [np.zeros(2)]
     for k in range(count):
-        at = at + [cos(angle), sin(angle)]
+        at = at + np.array([cos(angle), sin(angle)])
         joints.append(at)
         angle += turn * (-1) ** k if uniform() < 0.5 else turn
     return Net(np.array(joints), [(k, k + 1) for k in range(count)])

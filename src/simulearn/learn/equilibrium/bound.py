@@ -9,13 +9,14 @@ R. Koenker, G. Bassett, Regression quantiles, Econometrica 46, 1978; Y. Romano, 
 E. Candes, Conformalized quantile regression, NeurIPS 2019.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium.parameters import Prediction
 
@@ -42,6 +43,22 @@ class ErrorBound:
     weights: Numbers
     ranges: Numbers
     counts: Numbers
+
+    def to_arrays(self) -> dict[str, Numbers]:
+        """Return the arrays by name."""
+        return dict(vars(self))
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "ErrorBound":
+        """Return the estimate of a bundle.
+
+        Raises:
+            InputError: an array is missing.
+        """
+        for name in ("weights", "ranges", "counts"):
+            if name not in arrays:
+                raise InputError(f"weight trust.{name} is missing")
+        return cls(*(np.asarray(arrays[n], np.float64) for n in ("weights", "ranges", "counts")))
 
     def bound(self, designs: Designs, prediction: Prediction) -> Numbers:
         """Return the mean vertex error of the last frame that nine of ten stay below: (T,) mm."""
