@@ -142,7 +142,8 @@ def _cells_of(places: list[tuple[float, float]], sides: int, turn: float, radius
 def _merged(segments: NDArray[np.float64]) -> Net:
     """Return the net of segments (N, 2, 2), points in the same place being one joint."""
     keys: dict[tuple[float, float], int] = {}
-    joints, beams = [], []
+    joints: list[NDArray[np.float64]] = []
+    beams: list[tuple[int, int]] = []
     for segment in segments:
         ends = []
         for point in segment:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.material import Material, Member, member_of
 
+FAR = 0.5  # widths of a range beyond it, from which on there is no answer
 WORDS = {
     "strain": "strain of the active half",
     "passive": "strain of the passive half over it",
@@ -35,6 +36,23 @@ class Learnt:
 
     ranges: NDArray[np.float64]
     finest: float
+
+    def wrong(self, material: Material, base: Material) -> str | None:
+        """Return why there is no answer for a material, None where there may be one.
+
+        Args:
+            material: the material system.
+            base: the one whose family was learnt.
+        """
+        if form_of(material) != form_of(base):
+            return "its law is of another form (kind, Poisson ratio, or stress over modulus)"
+        far = {k: v for k, v in self.beyond(material).items() if not v[3] <= FAR}
+        return _listed(far) if far else None
+
+    def remark(self, material: Material) -> str | None:
+        """Return which numbers of a material are outside what was learnt, None where none is."""
+        beyond = self.beyond(material)
+        return _listed(beyond) if beyond else None
 
     def beyond(self, material: Material) -> dict[str, tuple[float, float, float, float]]:
         """Return the numbers of a material that were not learnt: (value, least, most, far).
@@ -68,6 +86,22 @@ class Learnt:
         if ranges is None or finest is None or ranges.shape != shape or finest.size != 1:
             raise InputError("weight learnt.ranges is missing, or does not fit this version")
         return cls(np.asarray(ranges, np.float64), float(finest))
+
+
+def form_of(material: Material) -> tuple[Any, ...]:
+    """Return the form of a material's law: what is left of it in units of its modulus."""
+    law = material.law
+    table = getattr(law, "table", ())
+    rows = tuple((round(e, 9), round(stress / law.modulus, 9)) for e, stress in table)
+    return law.kind, round(law.poisson, 6), rows
+
+
+def _listed(numbers: Mapping[str, tuple[float, float, float, float]]) -> str:
+    return "; ".join(
+        f"its {WORDS[name]} is {value:.4g}, learnt "
+        + (f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}")
+        for name, (value, least, most, _) in numbers.items()
+    )
 
 
 def learnt_of(materials: Iterable[Material], finest: float) -> Learnt:
