@@ -39,7 +39,7 @@ class Topology(NamedTuple):
     parts: Indices
     part: Indices
     side: Indices
-    real: Array
+    real: Any
 
 
 class Breadth(Protocol):
@@ -73,17 +73,17 @@ class FlatGeometry(NamedTuple):
         scale: () width of the section over that of the first material, 7.2 mm.
     """
 
-    centre: Array
-    corners: Array
-    area: Array
-    face: Array
-    frame: Array
-    reach: Array
-    skew: Array
-    length: Array
-    middle: Array
-    section: Array
-    scale: Array
+    centre: Any
+    corners: Any
+    area: Any
+    face: Any
+    frame: Any
+    reach: Any
+    skew: Any
+    length: Any
+    middle: Any
+    section: Any
+    scale: Any
 
 
 def topologies(beams: Indices, fixed: int, joints: NDArray[np.float64]) -> Topology:

@@ -139,7 +139,6 @@ class Learned:
             snaps=snaps,
             warnings=(
                 *one.warnings,
-                *self._unlike(one.grid),
                 *self._beyond_family(one.material),
                 *_left_balance(frames, t),
                 *_after_snap(snaps),
@@ -148,20 +147,6 @@ class Learned:
             ),
             record={"kind": self.bundle.card.kind},
         )
-
-    def _unlike(self, grid: Grid) -> Iterator[Message]:
-        """Yield a warning where a grid's topology is not the one that was learnt."""
-        bound = getattr(self.bundle.model, "bound", None)
-        if bound is None:
-            return
-        joints, beams = (int(n) for n in bound.counts)
-        if (len(grid.joints), len(grid.beams)) != (joints, beams):
-            yield Message(
-                "topology-unlike",
-                "grid",
-                f"the grid has {len(grid.joints)} joints and {len(grid.beams)} beams, the model "
-                f"has learnt {joints} and {beams}; its error bound is wider, and less sure",
-            )
 
     def require(self, material: Material) -> None:
         """Raise InputError where a material is not the one that the model has learnt."""

@@ -13,6 +13,7 @@ from simulearn.compiled import double_precision
 from simulearn.files import cores
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium import stresses
+from simulearn.learn.equilibrium.native import seen_in
 from simulearn.learn.equilibrium.parameters import Parameters
 from simulearn.learn.equilibrium.prediction import Prediction
 from simulearn.learn.equilibrium.prediction import predict as predict_frames
@@ -50,7 +51,7 @@ def predict(
 
     @double_precision
     def run(which: NDArray[np.int64]) -> Any:
-        some = Topology(*(x[which] for x in topology))
+        some = Topology(*(np.asarray(x)[which] for x in topology))
         own = Properties(*(x[which] for x in properties))
         found = kernel(some, designs.flat[which], designs.actuators[which], own)
         return jax.tree.map(np.asarray, found)
@@ -60,7 +61,8 @@ def predict(
             results = list(pool.map(run, parts))
     else:
         results = [run(which) for which in parts]
-    return Prediction(*jax.tree.map(lambda *x: np.concatenate(x)[:count], *results))
+    found = Prediction(*jax.tree.map(lambda *x: np.concatenate(x)[:count], *results))
+    return found if last else found._replace(seen=seen_in(designs))
 
 
 @lru_cache(maxsize=2)

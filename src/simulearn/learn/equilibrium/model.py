@@ -55,7 +55,7 @@ class Equilibrium:
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology; see `learn.common.model.Model`."""
         prediction = self.predict(designs)
-        bound = None if self.bound is None else self.bound.bound(designs, prediction)
+        bound = None if self.bound is None else self.bound.bound(designs, prediction, self.learnt)
         return Frames(
             np.asarray(prediction.joints),
             np.asarray(prediction.sections),

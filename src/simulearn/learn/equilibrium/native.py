@@ -20,6 +20,7 @@ from simulearn.learn.equilibrium.parameters import (
     FACE,
     MIDDLE,
     REST,
+    SEEN,
     STRESSES,
     TWIST_FLIP,
     TWIST_SIZE,
@@ -32,6 +33,7 @@ from simulearn.learn.equilibrium.parameters import (
 from simulearn.mechanics.kernels.geometry import set_corners
 from simulearn.mechanics.model import REFERENCE_WIDTH, SectionLaw, section_of
 from simulearn.mechanics.path import (
+    COEFFICIENTS,
     TOLERANCE,
     Grid,
     Path,
@@ -203,6 +205,7 @@ def _blank(count: int, frames: int, joints: int, beams: int, stress: bool) -> Pr
         stable=np.zeros(count, np.bool_),
         left_balance=np.zeros(count, np.bool_),
         snaps=[() for _ in range(count)],
+        seen=np.zeros((count, 2 * beams, SEEN)),
     )
 
 
@@ -275,6 +278,33 @@ def _predict(
     out.stable[t] = True
     out.left_balance[t] = first.left_balance or final.left_balance
     out.snaps[t] = tuple(final.snaps)
+    out.seen[t] = seen_halves(grid, valence, scale)
+
+
+def seen_in(designs: Designs) -> Numbers:
+    """Return what is seen of the halves of flat designs: (T, 2 B, SEEN)."""
+    corners, none = corner_topology(designs.beams, designs.flat), np.zeros(COEFFICIENTS)
+    rows = []
+    for t in range(len(designs)):
+        p = properties_of(designs.material_of(t))
+        own = tuple(x[t] for x in corners)
+        grid = grid_of(
+            designs.beams, designs.fixed, designs.flat[t], designs.actuators[t], own, none, p
+        )
+        valence = np.bincount(designs.beams.ravel(), minlength=len(designs.flat[t])).astype(float)
+        rows.append(seen_halves(grid, valence, p.width / REFERENCE_WIDTH))
+    return np.stack(rows)
+
+
+def seen_halves(grid: Grid, valence: Numbers, scale: float) -> Numbers:
+    """Return what is seen of a flat grid's halves: (2 B, SEEN); see `parameters.Prediction`."""
+    g, ends = grid.geometry, grid.layout.ends
+    size, length = np.abs(grid.ratio), g.length / scale
+    rows = [
+        np.stack([length] * 2), np.stack([size * length] * 2), g.reach / scale, g.skew / scale,
+        g.reach[::-1] / scale, g.skew[::-1] / scale, g.area[ends] / scale**2, valence[ends],
+    ]  # fmt: skip
+    return np.stack(rows, axis=-1).reshape(-1, SEEN)
 
 
 def _last_corrected(

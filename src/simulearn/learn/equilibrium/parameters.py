@@ -138,6 +138,8 @@ class Prediction(NamedTuple):
         left_balance: () whether an unstable equilibrium was left, so that a mirrored shape exists,
             or None where it is not known.
         snaps: sudden motions of each design, or None where they are not known.
+        seen: (2 B, SEEN) length, actuator, faces and joint of each half in sections of the
+            reference width, by which designs are like or unlike those of the training.
     """
 
     joints: Any
@@ -150,6 +152,10 @@ class Prediction(NamedTuple):
     stable: Any = None
     left_balance: Any = None
     snaps: Any = None
+    seen: Any = None
+
+
+SEEN = 8
 
 
 def network_shapes(heads: Heads, width: int, message: int, rounds: int) -> NetworkWeights:

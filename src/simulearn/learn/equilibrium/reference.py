@@ -15,7 +15,7 @@ from simulearn.grid.outline import corner_topology
 from simulearn.mechanics.forces import BeamState
 from simulearn.mechanics.model import REFERENCE_WIDTH
 from simulearn.mechanics.path import COEFFICIENTS, grid_of
-from simulearn.mechanics.poses import Array, Pose
+from simulearn.mechanics.poses import Pose
 from simulearn.mechanics.properties import Properties, properties_of, stacked
 from simulearn.mechanics.topology import FlatGeometry, Topology, topologies
 from simulearn.rigid import fit_rotation
@@ -39,12 +39,12 @@ class TrialPoses(NamedTuple):
 
     topology: Topology
     geometry: FlatGeometry
-    ratio: Array
-    size: Array
-    real: Array
+    ratio: Any
+    size: Any
+    real: Any
     state: BeamState
-    joints: Array
-    middles: Array
+    joints: Any
+    middles: Any
     properties: Properties
 
 

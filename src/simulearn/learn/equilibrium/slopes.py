@@ -68,7 +68,7 @@ def slopes(
     parameters = model.parameters._replace(stress=None)
     parts = []
     for t in range(len(designs)):
-        one = Topology(*(x[t] for x in topology))
+        one = Topology(*(np.asarray(x)[t] for x in topology))
         p = properties_of(designs.material_of(t), mesh)
         parts.append(kernel(parameters, one, designs.flat[t], designs.actuators[t], p, given))
     values: list[Any] = [np.stack([np.asarray(part[k]) for part in parts]) for k in range(4)]

@@ -23,11 +23,22 @@ from simulearn.learn.common.first_frame import designs_of
 from simulearn.learn.common.metrics import errors
 from simulearn.learn.common.trials import fingerprint, split
 from simulearn.learn.equilibrium import corrector
-from simulearn.learn.equilibrium.bound import ErrorBound, error_bound_of, signs
+from simulearn.learn.equilibrium.bound import (
+    ErrorBound,
+    error_bound_of,
+    seen_of,
+    signs_of_error,
+)
 from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
 from simulearn.learn.equilibrium.learnt import learnt_of
 from simulearn.learn.equilibrium.model import Equilibrium
-from simulearn.learn.equilibrium.parameters import CORRECTIONS, STRESSES, NetworkWeights, Parameters
+from simulearn.learn.equilibrium.parameters import (
+    CORRECTIONS,
+    STRESSES,
+    NetworkWeights,
+    Parameters,
+    Prediction,
+)
 from simulearn.learn.equilibrium.stages import (
     Keeper,
     Report,
@@ -61,12 +72,13 @@ def train(
             or the one by the fine mesh is not there.
         ComputationError: a loss is not finite.
     """
-    batches = split(config, data)[0]
+    batches, aside = split(config, data)
     if config.fine is not None:
         batches += [b.take(~b.test) for b in read_dataset(config.fine).batches if (~b.test).any()]
-    calibration = None
+    calibration: list[Batch] | None = None
     if config.calibration is not None:  # what is wrong with it is said before all the work
-        calibration = read_dataset(config.calibration, stress=False).batches
+        read = read_dataset(config.calibration, stress=False).batches
+        calibration = [b.take(~b.test) for b in read if (~b.test).any()]
     material = batches[0].material
     identity = fingerprint(config, data)
     stages = (config.law, config.network, config.polish, config.stress)
@@ -117,20 +129,37 @@ def train(
     learnt = learnt_of(seen, max(b.mesh for b in batches))
     model = Equilibrium(as_numpy, material, learnt, sizes, None, config.kind)
     if calibration is not None:
-        model = replace(model, bound=calibrated(model, calibration, batches))
+        model = replace(model, bound=calibrated(model, calibration, aside, batches))
     return model, every
 
 
 @double_precision
 def calibrated(
-    model: Equilibrium, calibration: Sequence[Batch], learnt: Sequence[Batch]
+    model: Equilibrium,
+    calibration: Sequence[Batch],
+    aside: Sequence[Batch],
+    learnt: Sequence[Batch],
 ) -> ErrorBound:
-    """Return the error estimate of a model, by trials that it did not learn from."""
-    indicators, wrong = [], []
-    for batch in calibration:
-        frames = model.rollout(designs_of(batch))
-        converged = frames.converged
-        prediction = model.predict(designs_of(batch))
-        indicators.append(signs(designs_of(batch), prediction)[converged])
-        wrong.append(errors(frames, batch).vertex[converged, -1])
-    return error_bound_of(np.concatenate(indicators), np.concatenate(wrong), learnt)
+    """Return the error estimate of a model, by trials that it did not learn from.
+
+    Args:
+        model: without an estimate.
+        calibration: trials that count for the coverage, by the mesh whose answers are wanted.
+        aside: further trials that the model did not learn from.
+        learnt: trials that it learnt from.
+    """
+    answers = [(batch, _answered(model, batch)) for batch in (*calibration, *aside)]
+    seen = seen_of([model.predict(designs_of(b), last=True).seen for b in learnt])
+    rows = []
+    for batch, (prediction, error, ended) in answers:
+        signs = signs_of_error(designs_of(batch), prediction, *seen)
+        rows.append((signs[ended], error[ended]))
+    signs, error = (np.concatenate(x) for x in zip(*rows, strict=True))
+    count = [np.concatenate(x) for x in zip(*rows[: len(calibration)], strict=True)]
+    return error_bound_of(signs, error, (count[0], count[1]), seen, learnt)
+
+
+def _answered(model: Equilibrium, batch: Batch) -> tuple[Prediction, Any, Any]:
+    """Return the prediction of trials, its errors in the last frame (mm), and which have one."""
+    prediction, frames = model.predict(designs_of(batch)), model.rollout(designs_of(batch))
+    return prediction, errors(frames, batch).vertex[:, -1], frames.converged
