@@ -74,8 +74,8 @@ def test_networks_are_those_of_the_reference(model, rules):
         many = topologies(designs.beams, designs.fixed, designs.flat)
         topology = Topology(*(x[0] for x in many))
         geometry = flat_geometry(topology, designs.flat[0], p)
-        R, p = path.R[frame].reshape(-1, 3, 3), path.p[frame]
-        state = BeamState(Pose(R[:count], p[:count]), Pose(R[count:], p[count:]))
+        R, at = path.R[frame].reshape(-1, 3, 3), path.p[frame]
+        state = BeamState(Pose(R[:count], at[:count]), Pose(R[count:], at[count:]))
         features = corrector.features_of(
             topology, geometry, designs.actuators[0], state, path.twists[frame],
             frames.released[frame], frames.gravity[frame], p,
