@@ -24,18 +24,17 @@ from simulearn.learn.equilibrium.parameters import (
     TWIST_MIRROR,
     TWIST_SIZE,
     NetworkWeights,
-    Parameters,
     joined,
     signed,
 )
 from simulearn.learn.equilibrium.prediction import plain
 from simulearn.learn.equilibrium.reference import TrialPoses, trial_poses
-from simulearn.learn.equilibrium.stages import Keeper, descend
+from simulearn.learn.equilibrium.stages import Keeper, StageExamples, descend
 from simulearn.material import load_material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.forces import BeamState
-from simulearn.mechanics.poses import Array, Pose, exp_so3
 from simulearn.mechanics.model import section_of, unfitted
+from simulearn.mechanics.poses import Array, Pose, exp_so3
 from simulearn.mechanics.properties import properties_of
 from simulearn.mechanics.rollout import RELEASED, loads, start
 from simulearn.mechanics.topology import FlatGeometry, Topology, flat_geometry, topologies
@@ -104,16 +103,18 @@ def fit_network_only(
         own = _own(t.topology, t.geometry, s)
         joints = _placed(predicted.joints, own[0]) - _placed(true.joints, t.joints[f])
         middles = _placed(predicted.middles, own[1]) - _placed(true.middles, t.middles[f])
-        return loss(joints.at[t.topology.fixed, :4].set(0.0), middles, t.size, s)
+        counts = t.real, t.topology.real
+        return loss(joints.at[t.topology.fixed, :4].set(0.0), middles, t.size, s, counts)
 
     def value(weights: NetworkWeights, some: TrialPoses, frame: Array) -> Array:
         return jax.vmap(lambda t, f: one(weights, t, f))(some, frame).mean()
 
-    def draw(k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
-        return jax.tree.map(lambda x: x[k], trials), f
+    def draw(some: StageExamples, k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
+        return jax.tree.map(lambda x: x[k], some.trials), f
 
     begin = corrector.initial_weights(jax.random.key(seed), POSES, *sizes)
-    return NetworkOnly(descend(begin, value, draw, stage, len(batch), seed, keep))
+    examples = [StageExamples(trials, None, None, None, np.ones(len(batch)))]
+    return NetworkOnly(descend(begin, value, draw, stage, examples, seed, keep))
 
 
 @dataclass(frozen=True, eq=False)
