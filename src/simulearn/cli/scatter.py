@@ -1,4 +1,4 @@
-"""Prints of a grid on the command line: simulated on request, and how far they differ as a table."""
+"""Prints of a grid on the command line: simulated on request, their spread as a table."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING

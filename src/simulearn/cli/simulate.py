@@ -175,7 +175,8 @@ def _many(
             data = _unread(row) if isinstance(row, InputError) else outcome_to_dict(row)
             if folder is not None:
                 kept = ("schema", "code", "where", "message", "hint", "seconds", "stable",
-                        "bound_mm", "snaps", "warnings", "material", "model", "scatter")  # fmt: skip
+                        "bound_mm", "snaps", "warnings", "material", "model",
+                        "scatter")  # fmt: skip
                 data = {"file": str(targets[name])} | {k: data[k] for k in kept if k in data}
             listed.append({"name": name} | data)
         print(json.dumps({"engine": engine, "failed": failed, "results": listed}, allow_nan=False))

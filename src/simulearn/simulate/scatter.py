@@ -152,7 +152,8 @@ def simulate_prints(
         parts.append(last_frames(grid, draw.materials[some], draw.factors[some]))
         if progress is not None:
             progress(min(first + CHUNK, len(draw)), len(draw))
-    return Prints(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+    joints, sections, converged = zip(*parts, strict=True)
+    return Prints(np.concatenate(joints), np.concatenate(sections), np.concatenate(converged))
 
 
 def answered(prints: Prints, drawn: int) -> Prints:
@@ -168,7 +169,8 @@ def answered(prints: Prints, drawn: int) -> Prints:
             "no-answer",
             "grid",
         )
-    return Prints(*(array[prints.converged] for array in prints))
+    which = prints.converged
+    return Prints(prints.joints[which], prints.sections[which], which[which])
 
 
 def material_of_print(material: Material, factor: float) -> Material:

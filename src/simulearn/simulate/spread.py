@@ -148,7 +148,7 @@ def spread_from_dict(data: Any, grid: Grid) -> Spread:
     shapes = [(len(grid.joints), *shape) for shape in _COLUMNS.values()]
     if [a.shape for a in columns] != shapes or not all(np.isfinite(a).all() for a in columns):
         raise wrong("joints", f"are not numbers for each of this grid's {len(grid.joints)} joints")
-    kinds = {"law": str, "engine": str, "seed": int, "drawn": int, "prints": int,
+    kinds: dict[str, Any] = {"law": str, "engine": str, "seed": int, "drawn": int, "prints": int,
              "print": float | int, "beam": float | int, "overall_mm": float | int}  # fmt: skip
     for key, kind in kinds.items():
         if isinstance(data.get(key), bool) or not isinstance(data.get(key), kind):
@@ -157,10 +157,19 @@ def spread_from_dict(data: Any, grid: Grid) -> Spread:
         scatter = Scatter(print=data["print"], beam=data["beam"])
     except ValueError as error:
         raise wrong("print", "and beam are not from 0 to 0.5") from error
-    same = {key: data[key] for key in ("law", "seed", "engine", "drawn", "prints")}
-    return Spread(scatter, **same, dimension=grid.dimension, **dict(
-        zip(("mean", "up", "plane", "up_90", "plane_90"), columns, strict=True)
-    ), overall=float(data["overall_mm"]))  # fmt: skip
-
-
-__all__ = ["Spread", "spread_from_dict", "spread_to_dict"]
+    mean, up, plane, up_90, plane_90 = columns
+    return Spread(
+        scatter=scatter,
+        law=data["law"],
+        seed=data["seed"],
+        engine=data["engine"],
+        drawn=data["drawn"],
+        prints=data["prints"],
+        dimension=grid.dimension,
+        mean=mean,
+        up=up,
+        plane=plane,
+        up_90=up_90,
+        plane_90=plane_90,
+        overall=float(data["overall_mm"]),
+    )
