@@ -105,11 +105,11 @@ def probability(
     nominal, points = points[0], points[1:]
     if known is not None:
         points = points + (known - nominal)
-    there = np.isfinite(points).all(axis=(1, 2))
+    there = np.asarray(np.isfinite(points).all(axis=(1, 2)))
     if not there.any():
         raise ComputationError("no print of the design has an answer", "no-answer", "grid")
     limits = np.array([np.inf if one is None else one for one in tolerances])
-    within = np.asarray(there[:, None] & (goals.distances(points) <= limits))
+    within = there[:, None] & (goals.distances(points) <= limits)
     met = int(within.all(axis=1).sum())
     some = any(one is not None for one in tolerances)
     interval = binomtest(met, count).proportion_ci(SURE, "wilson")
