@@ -11,13 +11,14 @@ from simulearn.mechanics.equilibrium import iterate
 from simulearn.mechanics.forces import BeamState, HalfBeams, forces, halves, moved, twists
 from simulearn.mechanics.poses import Pose, exp_so3
 from simulearn.mechanics.rollout import every_frame, loads, rollout
-from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.stiffness import exact_stiffness
+from simulearn.mechanics.model import section_of, unfitted
+from simulearn.mechanics.properties import properties_of
 from simulearn.mechanics.topology import Topology, flat_geometry, topologies
 
 PLA = load_material("pla-hot-water")
 with jax.enable_x64(True):
-    LOAD = loads(PLA)
+    LOAD = loads(properties_of(PLA))
 
 
 def chain(count, length, stiffness, angle=0.0):
@@ -195,7 +196,7 @@ def solved():
 def found(solved):
     """Where it is rolled out, and all that is found there."""
     design, _, function = solved
-    at = jax.tree.map(np.asarray, (design.joints, design.actuators, first_guess(PLA)))
+    at = jax.tree.map(np.asarray, (design.joints, design.actuators, section_of(unfitted(), properties_of(PLA))))
     (_, (every, states, motions)), slopes = function(*at)
     assert motions.max() < 1e-9
     return at, every, states, slopes

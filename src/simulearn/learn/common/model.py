@@ -35,6 +35,10 @@ class Designs:
         actuators: (T, B) signed ratios.
         material: the material system.
         reference: name or path of it, as grids have it.
+        materials: (T,) of each design, where they differ.
+        factors: (T, B) by which the released strains of beams differ from the material's, or None.
+        mesh: 0 for answers as of the default mesh, 1 for those of the fine one; None for the finest
+            that a model has learnt.
     """
 
     beams: NDArray[np.int64]
@@ -43,13 +47,27 @@ class Designs:
     actuators: NDArray[np.float64]
     material: Material = field(default_factory=standard)
     reference: str = "pla-hot-water"
+    materials: tuple[Material, ...] = ()
+    factors: NDArray[np.float64] | None = None
+    mesh: float | None = None
 
     def __len__(self) -> int:
         return len(self.flat)
 
     def take(self, which: Any) -> "Designs":
         """Return the designs of an index or mask over T."""
-        return replace(self, flat=self.flat[which], actuators=self.actuators[which])
+        stay = np.arange(len(self))[which]
+        return replace(
+            self,
+            flat=self.flat[which],
+            actuators=self.actuators[which],
+            materials=tuple(self.materials[k] for k in stay) if self.materials else (),
+            factors=None if self.factors is None else self.factors[which],
+        )
+
+    def material_of(self, t: int) -> Material:
+        """Return the material of design t."""
+        return self.materials[t] if self.materials else self.material
 
     @property
     def dimensions(self) -> NDArray[np.float64]:
