@@ -19,6 +19,7 @@ from simulearn.material import Scatter, load_material
 from simulearn.material.material import HERE
 from simulearn.simulate import Result, scatter
 from simulearn.simulate.members import Prints
+from simulearn.simulate.source import Source
 
 PLA = load_material("pla-hot-water")
 # Actuators that cancel each other: the joints hardly rise, and each print is another shape.
@@ -63,11 +64,15 @@ class Toy:
         )
 
 
+def answer(monkeypatch, frames):
+    """Let a function answer in place of an engine, as many prints at once as one likes."""
+    source = Source("toy", frames, count=16, chunk=100)
+    monkeypatch.setattr(scatter, "source_of", lambda materials, engine=None: source)
+
+
 @pytest.fixture(autouse=True)
 def by_the_toy(monkeypatch):
-    monkeypatch.setattr(scatter, "last_frames", prints)
-    monkeypatch.setattr(scatter, "CHUNK", 64)
-    monkeypatch.setattr(robust, "last_frames", prints)
+    answer(monkeypatch, prints)
     monkeypatch.setattr(search, "warm", lambda engine: None)
     monkeypatch.setattr(search, "engine_of", lambda name, model=None: Toy(name))
     monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Toy(name))
@@ -150,7 +155,7 @@ def test_a_print_without_an_answer_meets_nothing(fragile, monkeypatch):
         lost = np.array([m.shrinkage.active > 1.05 * PLA.shrinkage.active for m in materials])
         return found._replace(converged=~lost)
 
-    monkeypatch.setattr(scatter, "last_frames", partly)
+    answer(monkeypatch, partly)
     task = task_from_dict(fragile)
     told = probability(task.start, task.aims, (1000.0,), count=100)
     assert 0 < told.prints < 100
@@ -172,7 +177,7 @@ def test_the_expected_error_is_the_error_of_repeated_goals(fragile):
     many = repeated(goals, 3)
     assert (len(many), many.weights.sum()) == (3, pytest.approx(1.0))
     space = Space.of(grid, Free())
-    problem = robust_problem(space, goals, grid, None, np.inf, None, None)
+    problem = robust_problem(space, goals, grid, None, None, np.inf, None, None)
     x, a = space.start
     draw = scatter.even_prints(PLA, 4, robust.PRINTS)
     each = goals.points(*prints(grid, draw.materials, draw.factors)[:2])
@@ -260,7 +265,7 @@ def test_the_commands_tell_probabilities(run, fragile, tmp_path, monkeypatch):
     words = ("optimize", file, "-o", folder, "--tolerance", 1, "--robust")
     code, out, _ = run(*words)
     assert code == 0
-    assert "16 prints by fea are within all tolerances" in out
+    assert "16 prints by toy are within all tolerances" in out
     assert "of the best design without regard to prints" in out
     assert "goal 0 (joint 3, centre): " in out
     assert " % within 1 mm" in out
@@ -271,7 +276,7 @@ def test_the_commands_tell_probabilities(run, fragile, tmp_path, monkeypatch):
     assert told["suggestions"][0]["probability"]["tolerances"] == [1.0]
     out = run("rank", file, "--tolerance", 1)[1]
     assert "prints within" in out
-    assert "within the tolerances of all goals, of 16 prints by fea" in out
+    assert "within the tolerances of all goals, of 16 prints by toy" in out
     plain = json.loads(run("optimize", file, "-o", tmp_path / "plain", "--json")[1])
     assert "probability" not in plain
     code, _, err = run("rank", "saddle", "--tolerance", 1)

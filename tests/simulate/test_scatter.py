@@ -26,7 +26,7 @@ from simulearn.simulate import (
     write_json,
     write_npz,
 )
-from simulearn.simulate.members import Prints, last_frames
+from simulearn.simulate.members import Prints
 from simulearn.simulate.scatter import (
     draw_prints,
     even_prints,
@@ -34,6 +34,7 @@ from simulearn.simulate.scatter import (
     scattered,
     simulate_prints,
 )
+from simulearn.simulate.source import BY_FEA, Source, frames_by_fea
 from simulearn.simulate.spread import Spread
 
 PLA = load_material("pla-hot-water")
@@ -55,9 +56,15 @@ def pretended(grid, materials, factors=None):
     return Prints(joints, shape.beams[-1] * up[:, None], np.isfinite(joints).all(axis=(1, 2, 3)))
 
 
+def answer(monkeypatch, frames):
+    """Let a function answer in place of an engine, as many prints at once as one likes."""
+    source = Source("pretended", frames, count=16, chunk=50)
+    monkeypatch.setattr(scatter, "source_of", lambda materials, engine=None: source)
+
+
 @pytest.fixture
 def quick(monkeypatch):
-    monkeypatch.setattr(scatter, "last_frames", pretended)
+    answer(monkeypatch, pretended)
 
 
 def test_prints_follow_the_law_and_are_the_same_for_a_seed():
@@ -90,12 +97,13 @@ def test_a_print_has_all_strains_and_its_curl_so_many_times_as_large():
         assert getattr(other, name) == pytest.approx(1.2 * getattr(curled, name))
 
 
-def test_a_spread_is_what_the_prints_do():
+def test_a_spread_is_what_the_prints_do(monkeypatch):
     grid = make("saddle", (1, 1), 50.0)
     result = one(engine("fea").simulate([grid])[0])
+    monkeypatch.setattr(scatter, "source_of", lambda materials, engine=None: BY_FEA)
     told = scattered(result, 4).scatter
     draw = draw_prints(PLA, 4, 4)
-    centres = last_frames(result.grid, draw.materials, draw.factors).centres
+    centres = frames_by_fea(result.grid, draw.materials, draw.factors).centres
     np.testing.assert_allclose(told.mean, centres.mean(axis=0))
     np.testing.assert_allclose(told.up, centres[..., 2].std(axis=0))
     away = centres - centres.mean(axis=0)
@@ -150,25 +158,25 @@ def test_prints_without_an_answer_are_told(monkeypatch):
         prints.joints[lost] = np.nan
         return prints._replace(converged=~lost)
 
-    monkeypatch.setattr(scatter, "last_frames", partly)
+    answer(monkeypatch, partly)
     told = scattered(synthetic.result(), 40).scatter
     lost = int((strains(draw_prints(PLA, 12, 40)) > 0.1).sum())
     assert 0 < lost == told.drawn - told.prints
     assert f"{40 - lost} prints ({lost} more have no answer) by" in told.words
     assert np.isfinite(told.up).all()
-    monkeypatch.setattr(scatter, "last_frames", lambda *a: partly(*a)._replace(
-        converged=np.zeros(len(a[1]), bool)))  # fmt: skip
+    answer(monkeypatch, lambda *a: partly(*a)._replace(converged=np.zeros(len(a[1]), bool)))
     with pytest.raises(ComputationError, match="only 0 of 40 prints have an answer"):
         scattered(synthetic.result(), 40)
 
 
-def test_prints_are_counted_and_can_be_stopped(quick):
+def test_prints_are_counted_and_can_be_stopped():
     draw, seen, token = draw_prints(SOME, 12, 6), [], threading.Event()
-    simulate_prints(synthetic.square_grid(), draw, lambda *now: seen.append(now))
-    assert seen[-1] == (6, 6)
+    source = Source("pretended", pretended, count=16, chunk=4)
+    simulate_prints(synthetic.square_grid(), draw, source, lambda *now: seen.append(now))
+    assert seen == [(4, 6), (6, 6)]
     token.set()
     with pytest.raises(CancelledError):
-        simulate_prints(synthetic.square_grid(), draw, cancel=token)
+        simulate_prints(synthetic.square_grid(), draw, source, cancel=token)
 
 
 def test_a_band_holds_nine_of_ten_lines_and_is_drawn(quick):
@@ -183,12 +191,11 @@ def test_a_band_holds_nine_of_ten_lines_and_is_drawn(quick):
     place = ((middles - low) * across).sum(-1) / np.linalg.norm(high - low, axis=-1)
     inside = ((place > -1e-9) & (place < 1 + 1e-9)).mean(axis=0)
     np.testing.assert_allclose(inside, 0.9, atol=0.02)
-    for draw in (deformed, combined):
-        plain, banded = (pixels(draw(one)) for one in (synthetic.result(), result))
-        purple = [(abs(a - to_rgb(BAND)) < 0.1).all(-1).sum() for a in (plain, banded)]
-        assert purple[1] > 300 > 5 > purple[0]
-        for rim in (banded[:6], banded[-6:], banded[:, :6], banded[:, -6:]):
-            assert (rim == 1).all()
+    plain, banded = (pixels(combined(one)) for one in (synthetic.result(), result))
+    purple = [(abs(a - to_rgb(BAND)) < 0.1).all(-1).sum() for a in (plain, banded)]
+    assert purple[1] > 300 > 5 > purple[0]
+    for rim in (banded[:6], banded[-6:], banded[:, :6], banded[:, -6:]):
+        assert (rim == 1).all()
 
 
 def pixels(figure):
@@ -208,11 +215,12 @@ def test_a_spread_of_a_file_has_figures_and_no_band(quick, tmp_path):
 
 def test_the_command_tells_and_writes_the_spread(run, quick, tmp_path):
     grid, file = tmp_path / "g.json", tmp_path / "r.json"
-    write_grid(make("saddle", (1, 1), 50.0), grid)
-    words = ("simulate", grid, "--engine", "beams", "--scatter", "--prints", 12)
+    for path in (grid, tmp_path / "h.json"):
+        write_grid(make("saddle", (1, 1), 50.0), path)
+    words = ("simulate", grid, "--engine", "fea", "--scatter", "--prints", 12)
     code, out, _ = run(*words, "-o", file)
     assert code == 0
-    assert "12 prints by fea differ by" in out
+    assert "12 prints by pretended differ by" in out
     assert "strains differ by 17.0% between prints, 8.5% between beams of one" in out
     block = json.loads(file.read_text())["scatter"]
     assert len(block["joints"]) == 4
@@ -220,12 +228,18 @@ def test_the_command_tells_and_writes_the_spread(run, quick, tmp_path):
     assert told == block
     assert "scatter" not in json.loads(run(*words[:4], "--json")[1])
     assert "differ by" not in run(*words[:4])[1]
-    words = ("simulate", grid, "saddle", "--engine", "beams", "--scatter", "-o", f"{tmp_path}/all/")
-    assert run(*words)[0] == 0
-    assert (
-        json.loads((tmp_path / "all" / "saddle.json").read_text())["scatter"]["drawn"]
-        == scatter.COUNT
+    words = (
+        "simulate",
+        grid,
+        tmp_path / "h.json",
+        "--engine",
+        "fea",
+        "--scatter",
+        "-o",
+        f"{tmp_path}/all/",
     )
+    assert run(*words)[0] == 0
+    assert json.loads((tmp_path / "all" / "h.json").read_text())["scatter"]["drawn"] == 16
 
 
 def test_a_material_without_scatter_says_what_to_do(run, tmp_path):

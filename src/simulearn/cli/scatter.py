@@ -10,7 +10,7 @@ from simulearn.material import load_material
 
 if TYPE_CHECKING:
     from simulearn.grid import Grid
-    from simulearn.simulate import Result
+    from simulearn.simulate import Result, Simulator
     from simulearn.simulate.spread import Spread
 
 
@@ -27,12 +27,12 @@ class SimulatedPrints:
 
         require_scatter(load_material(design.material))
 
-    def added(self, result: "Result") -> "Result":
-        """Return a result with its spread."""
-        from simulearn.simulate.scatter import COUNT, scattered
+    def added(self, result: "Result", engine: "Simulator") -> "Result":
+        """Return the result of an engine with its spread."""
+        from simulearn.simulate.scatter import scattered
 
         with counting("prints", quiet=self.quiet) as progress:
-            return scattered(result, self.count or COUNT, progress=progress)
+            return scattered(result, self.count, engine=engine, progress=progress)
 
 
 def spread_table(spread: "Spread", fixed: int) -> Table:

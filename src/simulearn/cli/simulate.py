@@ -112,7 +112,7 @@ def _one(
         for line in remarks(result):
             err.print(f"[yellow]note:[/] {escape(line)}")
     if spread is not None:
-        result = spread.added(result)
+        result = spread.added(result, answering)
     for path in files:
         outputs.write(result, path)
     if as_json:
@@ -161,7 +161,7 @@ def _many(
     with preparing(quiet=as_json), counting("frames", quiet=as_json) as progress:
         for k, outcome in answering.stream(list(designs.values()), progress):
             if spread is not None and isinstance(outcome, Result):
-                outcome = spread.added(outcome)
+                outcome = spread.added(outcome, answering)
             if folder is not None:
                 write_json(outcome, targets[places[k]])
                 if isinstance(outcome, Result):  # what is written need not stay in memory

@@ -83,9 +83,9 @@ def _probability(
     search: Search, design: Check, goals: Goals, warnings: list[Message]
 ) -> Probability | None:
     """Return how often prints of a design meet the goals; None where there is no answer."""
-    known, wanted = _points(design, goals), search.task.tolerances
+    known, wanted, grid = _points(design, goals), search.task.tolerances, design.grid.centred
     try:
-        return probability(design.grid.centred, goals, wanted, known, cancel=search.cancel)
+        return probability(grid, goals, wanted, known, engine=search.engine, cancel=search.cancel)
     except ComputationError as error:
         text = f"how often a print meets the goals is not known: {error}"
         warnings.append(Message("no-probability", "goals", text))
@@ -100,7 +100,9 @@ def _robust(
     until = monotonic() + limits.seconds - search.seconds - search.checking
     out_of_time = Until(search.cancel, until)
     known, grid = _points(best, goals), best.grid.centred
-    problem = robust_problem(space, goals, grid, known, until, search.cancel, out_of_time)
+    problem = robust_problem(
+        space, goals, grid, known, search.engine, until, search.cancel, out_of_time
+    )
     # An earlier run may have come further.
     earlier = [step.grid(space.grid) for step in search.steps[-1:] if step.phase == ROBUST]
     try:

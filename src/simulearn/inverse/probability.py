@@ -16,8 +16,9 @@ from simulearn.errors import Cancel, ComputationError
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.material import load_material
-from simulearn.simulate import Progress
-from simulearn.simulate.scatter import COUNT, ENGINE, Draw, draw_prints, simulate_prints
+from simulearn.simulate import Progress, Simulator
+from simulearn.simulate.scatter import Draw, draw_prints, prints_source, simulate_prints
+from simulearn.simulate.source import Source
 
 Array = NDArray[np.float64]
 
@@ -79,7 +80,8 @@ def probability(
     goals: Goals,
     tolerances: Sequence[float | None],
     known: Array | None = None,
-    count: int = COUNT,
+    count: int | None = None,
+    engine: Simulator | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Probability:
@@ -90,7 +92,8 @@ def probability(
         goals: what is wanted.
         tolerances: of each goal, mm, or None.
         known: (G, 3) mm, where the vertices of the design are by finite elements or the engine.
-        count: of the prints.
+        count: of the prints; as many as is quick if not given.
+        engine: that simulates the design; see `simulate.scatter.prints_source`.
         progress: called with the prints done and the prints in all.
         cancel: stops between prints.
 
@@ -100,8 +103,10 @@ def probability(
         CancelledError: the token was set.
     """
     material = load_material(grid.material)
+    source = prints_source(material, engine)
+    count = count or source.count
     draw = draw_prints(material, len(grid.beams), count, SEED).with_nominal(material)
-    points = points_of_prints(grid, goals, draw, progress, cancel)
+    points = points_of_prints(grid, goals, draw, source, progress, cancel)
     nominal, points = points[0], points[1:]
     if known is not None:
         points = points + (known - nominal)
@@ -117,7 +122,7 @@ def probability(
     return Probability(
         drawn=count,
         prints=int(there.sum()),
-        engine=ENGINE,
+        engine=source.engine,
         tolerances=tuple(tolerances),
         goals=tuple(
             None if one is None else float(share)
@@ -134,10 +139,11 @@ def points_of_prints(
     grid: Grid,
     goals: Goals,
     draw: Draw,
+    source: Source,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Array:
     """Return where the goals' vertices come to in each print: (T, G, 3) mm; NaN without answer."""
-    prints = simulate_prints(grid, draw, progress, cancel)
+    prints = simulate_prints(grid, draw, source, progress, cancel)
     points = goals.points(prints.joints, prints.sections)
     return np.where(prints.converged[:, None, None], points, np.nan)

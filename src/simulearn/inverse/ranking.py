@@ -107,7 +107,7 @@ def rank(
         simulator = engine_of(simulator, model)
     if isinstance(design, Task):
         ranking = _ranked(design.start, design.aims, design.free, simulator, cancel)
-        return _with_probabilities(ranking, design, cancel, progress)
+        return _with_probabilities(ranking, design, simulator, cancel, progress)
     return _ranked(design, None, free or Free(), simulator, cancel)
 
 
@@ -156,7 +156,11 @@ def _ranked(
 
 
 def _with_probabilities(
-    ranking: Ranking, task: Task, cancel: Cancel | None, progress: Progress | None
+    ranking: Ranking,
+    task: Task,
+    engine: Simulator,
+    cancel: Cancel | None,
+    progress: Progress | None,
 ) -> Ranking:
     """Return a ranking of a task with tolerances that says how often prints are within them."""
     goals, wanted = task.aims, task.tolerances
@@ -174,7 +178,11 @@ def _with_probabilities(
                 progress(done * of + now, len(designs) * of)
 
         try:
-            found.append(probability(grid, goals, wanted, points, progress=part, cancel=cancel))
+            found.append(
+                probability(
+                    grid, goals, wanted, points, engine=engine, progress=part, cancel=cancel
+                )
+            )
         except ComputationError:  # the table shows that there is none
             found.append(None)
     own, *others = found

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import Cancel, stop_if
+from simulearn.errors import Cancel
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.probability import points_of_prints
@@ -20,8 +20,9 @@ from simulearn.inverse.scoring import Places, grids
 from simulearn.inverse.space import Space
 from simulearn.learn.common.model import Designs
 from simulearn.material import load_material
-from simulearn.simulate.members import last_frames
-from simulearn.simulate.scatter import Draw, even_prints
+from simulearn.simulate import Simulator
+from simulearn.simulate.scatter import Draw, even_prints, prints_source
+from simulearn.simulate.source import Source
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,7 @@ def robust_problem(
     goals: Goals,
     grid: Grid,
     known: Array | None,
+    engine: Simulator | None,
     until: float,
     cancel: Cancel | None,
     out_of_time: Cancel | None,
@@ -45,21 +47,22 @@ def robust_problem(
         grid: the design to begin with.
         known: (G, 3) mm, where its vertices are by finite elements; what the simulator of prints
             says elsewhere is moved by the difference.
+        engine: that simulates the design; see `simulate.scatter.prints_source`.
         until: when to stop.
         cancel: stops the search.
         out_of_time: stops a batch of designs, when the time is over or the search is stopped.
     """
     material = load_material(grid.material)
+    source = prints_source(material, engine)
     draw = even_prints(material, len(grid.beams), PRINTS)
     shift = np.zeros((len(goals), 3))
     if known is not None:
-        nominal = last_frames(grid, [material])
-        if nominal.converged[0]:
-            shift = known - goals.points(nominal.joints, nominal.sections)[0]
+        nominal = Draw([material], np.ones((1, len(grid.beams))))
+        shift = np.nan_to_num(known - points_of_prints(grid, goals, nominal, source)[0])
     return Problem(
         space,
         repeated(goals, PRINTS),
-        _places(goals, draw, shift, out_of_time),
+        _places(goals, draw, source, shift, out_of_time),
         source=drawing(PRINTS),
         until=until,
         cancel=cancel,
@@ -76,12 +79,14 @@ def repeated(goals: Goals, count: int) -> Goals:
     )
 
 
-def _places(goals: Goals, draw: Draw, shift: Array, cancel: Cancel | None) -> Places:
+def _places(
+    goals: Goals, draw: Draw, source: Source, shift: Array, cancel: Cancel | None
+) -> Places:
     def places(designs: Designs) -> Array:
         points = np.empty((len(designs), len(draw) * len(goals), 3))
         for t, grid in enumerate(grids(designs)):
-            stop_if(cancel)
-            points[t] = (points_of_prints(grid, goals, draw) + shift).reshape(-1, 3)
+            there = points_of_prints(grid, goals, draw, source, cancel=cancel)
+            points[t] = (there + shift).reshape(-1, 3)
         # A design of which a print has no answer is none that can be relied on.
         points[~np.isfinite(points).all(axis=(1, 2))] = np.nan
         return points

@@ -16,23 +16,21 @@ from scipy.special import ndtr, ndtri
 from simulearn.errors import Cancel, ComputationError, InputError, stop_if
 from simulearn.grid import Grid
 from simulearn.material import Material, Scatter, load_material
-from simulearn.simulate.members import Prints, last_frames
+from simulearn.simulate.members import Prints
 from simulearn.simulate.result import Result
-from simulearn.simulate.simulator import Progress
+from simulearn.simulate.simulator import Progress, Simulator
+from simulearn.simulate.source import Source, source_of
 from simulearn.simulate.spread import Spread
 
 Numbers = NDArray[np.float64]
 
-# Who answers in `members.last_frames`, how many prints are drawn unless a number is given, and how
-# many are simulated between two looks at progress and cancel.
-ENGINE, COUNT, CHUNK = "fea", 16, 1
 CUT = 3.0  # standard deviations
 LAW = f"normal, cut at {CUT:g} standard deviations"
 LEAST = 4  # prints of which a spread can be told
 
 
 class Draw(NamedTuple):
-    """T prints of a grid of B beams, to be simulated by `last_frames`.
+    """T prints of a grid of B beams.
 
     Attributes:
         materials: of each print.
@@ -53,8 +51,9 @@ class Draw(NamedTuple):
 
 def scattered(
     result: Result,
-    count: int = COUNT,
+    count: int | None = None,
     seed: int = 0,
+    engine: Simulator | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Result:
@@ -62,8 +61,9 @@ def scattered(
 
     Args:
         result: of any engine.
-        count: of the prints, at least LEAST.
+        count: of the prints, at least LEAST; as many as is quick if not given.
         seed: the same draws the same prints.
+        engine: that gave the result; see `prints_source`.
         progress: called with the prints done and the prints in all.
         cancel: stops between prints.
 
@@ -74,10 +74,25 @@ def scattered(
     """
     grid = result.grid
     material = load_material(grid.material)
-    draw = draw_prints(material, len(grid.beams), count, seed)
-    prints = answered(simulate_prints(grid, draw, progress, cancel), count)
-    told = Spread.of(grid, prints, material.scatter, drawn=count, law=LAW, seed=seed, engine=ENGINE)
+    source = prints_source(material, engine)
+    drawn = count or source.count
+    draw = draw_prints(material, len(grid.beams), drawn, seed)
+    prints = answered(simulate_prints(grid, draw, source, progress, cancel), drawn)
+    told = Spread.of(
+        grid, prints, material.scatter, drawn=drawn, law=LAW, seed=seed, engine=source.engine
+    )
     return replace(result, scatter=told)
+
+
+def prints_source(material: Material, engine: Simulator | None = None) -> Source:
+    """Return who simulates the prints of a material; see `source_of`.
+
+    Raises:
+        InputError: the material has no scatter.
+    """
+    most = CUT * require_scatter(material).print
+    ends = [material_of_print(material, max(1 + side * most, 0.0)) for side in (-1, 1)]
+    return source_of([material, *ends], engine)
 
 
 def require_scatter(material: Material) -> Scatter:
@@ -132,13 +147,18 @@ def even_prints(material: Material, beams: int, count: int, seed: int = 0) -> Dr
 
 
 def simulate_prints(
-    grid: Grid, draw: Draw, progress: Progress | None = None, cancel: Cancel | None = None
+    grid: Grid,
+    draw: Draw,
+    source: Source,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
 ) -> Prints:
     """Return the last frames of prints that were drawn.
 
     Args:
-        grid: as `last_frames` takes it.
+        grid: a sound grid, its fixed joint at the origin.
         draw: the prints.
+        source: who simulates them.
         progress: called with the prints done and the prints in all.
         cancel: stops between prints.
 
@@ -146,12 +166,12 @@ def simulate_prints(
         CancelledError: the token was set.
     """
     parts = []
-    for first in range(0, len(draw), CHUNK):
+    for first in range(0, len(draw), source.chunk):
         stop_if(cancel)
-        some = slice(first, first + CHUNK)
-        parts.append(last_frames(grid, draw.materials[some], draw.factors[some]))
+        some = slice(first, first + source.chunk)
+        parts.append(source.frames(grid, draw.materials[some], draw.factors[some]))
         if progress is not None:
-            progress(min(first + CHUNK, len(draw)), len(draw))
+            progress(min(first + source.chunk, len(draw)), len(draw))
     joints, sections, converged = zip(*parts, strict=True)
     return Prints(np.concatenate(joints), np.concatenate(sections), np.concatenate(converged))
 
