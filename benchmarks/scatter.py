@@ -128,8 +128,8 @@ def sampled(report: Report, grids: list[Grid], material: Material, count: int | 
     report.say("## Prints that were drawn")
     report.say(
         f"{count} prints of each grid by {source.engine}, {LAW}; {seconds:.0f} s in all. Root mean "
-        f"square of the standard deviations of the spans: **{found:.2f} %** of the dimension, measured "
-        f"{MEASURED} %: {verdict(found)}."
+        f"square of the standard deviations of the spans: **{found:.2f} %** of the dimension, "
+        f"measured {MEASURED} %: {verdict(found)}."
     )
     report.table(
         ["grid", "dimension, mm", "prints", "one span", "the other", "a joint, mean"], rows
