@@ -70,9 +70,7 @@ def balance(topology, joints, ratio, state, frame, p, model):
     geometry = flat_geometry(topology, joints, p)
     gravity = jnp.asarray(SCHEDULE.gravity(PLA.creep.amplitude))[frame]
     released = jnp.asarray(SCHEDULE.released)[frame]
-    half_beams = half_beams_at(
-        model, topology, geometry, ratio, loads(p), released, gravity
-    )
+    half_beams = half_beams_at(model, topology, geometry, ratio, loads(p), released, gravity)
     at = topology, half_beams, state
     return forces(*at), exact_stiffness(*at), twists(*at)
 
@@ -92,7 +90,8 @@ def reference(grid: Grid, path, frame: int, material=PLA):
 
 @pytest.mark.parametrize("kind", GRIDS)
 @pytest.mark.parametrize("material", MATERIALS)
-def test_states_are_equilibria_of_the_reference(kind, material, frame=11):
+def test_states_are_equilibria_of_the_reference(kind, material):
+    frame = 11
     grid = GRIDS[kind]()
     _, path = native(grid, MATERIALS[material], tolerance=1e-9)
     assert path.ended

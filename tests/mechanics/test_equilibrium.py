@@ -9,11 +9,11 @@ from simulearn.grid import Rules, draw_valid
 from simulearn.material import load_material
 from simulearn.mechanics.equilibrium import iterate
 from simulearn.mechanics.forces import BeamState, HalfBeams, forces, halves, moved, twists
+from simulearn.mechanics.model import section_of, unfitted
 from simulearn.mechanics.poses import Pose, exp_so3
+from simulearn.mechanics.properties import properties_of
 from simulearn.mechanics.rollout import every_frame, loads, rollout
 from simulearn.mechanics.stiffness import exact_stiffness
-from simulearn.mechanics.model import section_of, unfitted
-from simulearn.mechanics.properties import properties_of
 from simulearn.mechanics.topology import Topology, flat_geometry, topologies
 
 PLA = load_material("pla-hot-water")
@@ -196,7 +196,9 @@ def solved():
 def found(solved):
     """Where it is rolled out, and all that is found there."""
     design, _, function = solved
-    at = jax.tree.map(np.asarray, (design.joints, design.actuators, section_of(unfitted(), properties_of(PLA))))
+    at = jax.tree.map(
+        np.asarray, (design.joints, design.actuators, section_of(unfitted(), properties_of(PLA)))
+    )
     (_, (every, states, motions)), slopes = function(*at)
     assert motions.max() < 1e-9
     return at, every, states, slopes

@@ -179,7 +179,10 @@ def fit_stress(
 
 @double_precision
 def examples_of(
-    batches: Sequence[Batch], law: SectionLaw | None = None, fine: float = 1.0
+    batches: Sequence[Batch],
+    law: SectionLaw | None = None,
+    like: Sequence[StageExamples] = (),
+    often: float = 1.0,
 ) -> list[StageExamples]:
     """Return trials by size, with their first shapes where a law is given.
 
@@ -188,17 +191,19 @@ def examples_of(
     Args:
         batches: by topology.
         law: of sections.
-        fine: how many times as often trials by the fine mesh are drawn.
+        like: further examples, whose sizes are used again as far as there is room in them.
+        often: how many times as often these trials are drawn as others.
     """
     batches = [
         part for b in batches if len(part := b.take(~np.array(b.snapped or [False] * len(b))))
     ]
     sizes = [(b.flat.shape[1], len(b.beams)) for b in batches for _ in range(len(b))]
-    rooms = buckets(sizes)
+    rooms = [(x.trials.real.shape[1], x.trials.ratio.shape[1]) for x in like]
+    rooms += buckets(sizes)
     parts: list[list[StageExamples]] = [[] for _ in rooms]
     for batch in batches:
         room = bucket_of((batch.flat.shape[1], len(batch.beams)), rooms)
-        parts[room].append(_examples(batch, law, rooms[room], fine))
+        parts[room].append(_examples(batch, law, rooms[room], often))
     whole = [joined(some) for some in parts if sum(len(x.weight) for x in some)]
     if law is None:
         return whole
@@ -206,10 +211,10 @@ def examples_of(
 
 
 def _examples(
-    batch: Batch, law: SectionLaw | None, room: tuple[int, int], fine: float
+    batch: Batch, law: SectionLaw | None, room: tuple[int, int], often: float
 ) -> StageExamples:
     trials = trial_poses(batch)
-    weight = np.full(len(batch), fine if batch.mesh else 1.0)
+    weight = np.full(len(batch), often)
     if law is None:
         none = np.zeros((len(batch), 0))
         return StageExamples(filled(trials, *room), none, none, none, weight)

@@ -73,8 +73,9 @@ def train(
         ComputationError: a loss is not finite.
     """
     batches, aside = split(config, data)
+    fine: list[Batch] = []
     if config.fine is not None:
-        batches += [b.take(~b.test) for b in read_dataset(config.fine).batches if (~b.test).any()]
+        fine = [b.take(~b.test) for b in read_dataset(config.fine).batches if (~b.test).any()]
     calibration: list[Batch] | None = None
     if config.calibration is not None:  # what is wrong with it is said before all the work
         read = read_dataset(config.calibration, stress=False).batches
@@ -98,13 +99,13 @@ def train(
         return before + stage.updates
 
     keep = keeper("law")
-    examples = examples_of(batches, fine=config.fine_share)
+    examples = examples_of(batches)
     law = fit_law(examples, unfitted(), config.law, config.seed, keep)
     law = jax.tree.map(np.asarray, law)
     before = finished(config.law, keep)
     networks: dict[str, NetworkWeights] = {}
     if config.network is not None or config.stress is not None:
-        examples = examples_of(batches, law, config.fine_share)
+        examples = examples_of(batches, law)
         for name, stage, heads, task in (
             ("network", config.network, CORRECTIONS, fit_network),
             ("polish", config.polish, CORRECTIONS, partial(fit_network, full=True)),
@@ -112,6 +113,9 @@ def train(
         ):
             if stage is None:
                 continue
+            if name != "network" and fine:  # then it learns what the fine mesh says differently
+                examples = examples + examples_of(fine, law, examples, config.fine_share)
+                batches, fine = batches + fine, []
             begin = networks.get("network") if name == "polish" else None
             if begin is None:
                 key = jax.random.key(config.seed)
@@ -125,6 +129,7 @@ def train(
     network, stress = networks.get("network"), networks.get("stress")
     sizes = (config.width, config.message, config.rounds)
     as_numpy: Any = jax.tree.map(np.asarray, Parameters(law, network, stress))
+    batches += fine
     seen = [m for b in batches for m in (b.materials or (b.material,))]
     learnt = learnt_of(seen, max(b.mesh for b in batches))
     model = Equilibrium(as_numpy, material, learnt, sizes, None, config.kind)
