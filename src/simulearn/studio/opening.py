@@ -141,7 +141,8 @@ def _of_task(data: Any) -> dict[str, Any]:
             raise
         task = Task.model_validate(data)
     messages = []
-    if (task.free, task.limits, task.method, task.of_prints) != (Free(), Limits(), "default", False):
+    plain = (task.free, task.limits, task.method) == (Free(), Limits(), "default")
+    if not plain or task.of_prints:
         text = (
             "what the task says about free parts, limits, method, tolerances and robust is not "
             "part of a document"
