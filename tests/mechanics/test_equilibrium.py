@@ -36,6 +36,7 @@ def chain(count, length, stiffness, angle=0.0):
         np.array(0),
         *(np.zeros((count + 1, 4), np.int64) for _ in range(4)),
         np.zeros((2, count), np.int64),
+        np.ones(count),
     )
     at = np.linspace(0, angle, 2 * count + 1)
     radius = length / angle if angle else None

@@ -43,6 +43,10 @@ def simulate(
         str, typer.Option(help="The engine: fea, calculix, beams or learned.")
     ] = "fea",
     model: ModelOption = None,
+    mesh: Annotated[
+        str | None,
+        typer.Option(help="The mesh of the engine fea: default, or fine, which takes longer."),
+    ] = None,
     material: MaterialOption = None,
     output: Annotated[
         list[str] | None,
@@ -75,17 +79,19 @@ def simulate(
     if len(names) == 1 and not a_folder:
         design = grid_of(names[0], material)
         outputs.check(files, Path(names[0]))
-        _one(design, _engine(engine, model), engine, model, files, spread, as_json)
+        answering = _engine(engine, model, mesh)
+        _one(design, answering, engine, model, files, spread, as_json)
         return
     if len(files) > 1 or (files and not a_folder and files[0].suffix and not files[0].is_dir()):
         raise InputError(f"{files[-1]}: several grids go to one folder, whose name ends in /")
-    _many(names, engine, model, material, files[0] if files else None, spread, as_json)
+    answering = _engine(engine, model, mesh)
+    _many(names, answering, engine, material, files[0] if files else None, spread, as_json)
 
 
-def _engine(name: str, model: str | None) -> "StreamingSimulator":
+def _engine(name: str, model: str | None, mesh: str | None) -> "StreamingSimulator":
     from simulearn.simulate import engine
 
-    return engine(name, model)
+    return engine(name, model, mesh)
 
 
 def _one(
@@ -127,8 +133,8 @@ def _one(
 
 def _many(
     names: list[str],
+    answering: "StreamingSimulator",
     engine: str,
-    model: str | None,
     material: Path | None,
     folder: Path | None,
     spread: SimulatedPrints | None,
@@ -139,7 +145,6 @@ def _many(
 
     if folder is not None:
         _check_names(names)
-    answering = _engine(engine, model)
     designs: dict[str, Grid] = {}
     outcomes: dict[str, Outcome] = {}
     unread: dict[str, InputError] = {}
@@ -272,7 +277,10 @@ def _table(result: "Result") -> Table:
     numbers: dict[str, Any] = summary(result)
     motion = "rise" if numbers["rise_mm"] > 0 else "fall"
     work = f", {numbers['iterations']} iterations" if "iterations" in numbers else ""
-    caption = f"{result.engine}, {_seconds(result.seconds)}{work}; millimetres, +z up"
+    mesh = ""
+    if "mesh" in numbers:
+        mesh = f", {numbers['mesh']} mesh of {numbers['bricks']:,} bricks"
+    caption = f"{result.engine}{mesh}, {_seconds(result.seconds)}{work}; millimetres, +z up"
     caption += f"\nmaterial {result.material}"
     if result.model is not None:
         caption += f", model {result.model}"

@@ -83,7 +83,7 @@ class Batch:
         names = ("flat", "actuators", "joints", "sections", "numbers", "test")
         stress = None if self.stress is None else self.stress[which]
         stay = np.arange(len(self))[which]
-        lists = {
+        lists: dict[str, Any] = {
             name: tuple(values[k] for k in stay)
             for name in ("materials", "kinds", "snapped")
             if (values := getattr(self, name))

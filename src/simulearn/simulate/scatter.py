@@ -45,8 +45,8 @@ class Draw(NamedTuple):
 
     def with_nominal(self, material: Material) -> "Draw":
         """Return the same after one more print, the first, which is as the material says."""
-        as_told = np.ones_like(self.factors[:1])
-        return Draw([material, *self.materials], np.vstack([as_told, self.factors]))
+        nominal = np.ones_like(self.factors[:1])
+        return Draw([material, *self.materials], np.vstack([nominal, self.factors]))
 
 
 def scattered(
@@ -78,10 +78,10 @@ def scattered(
     drawn = count or source.count
     draw = draw_prints(material, len(grid.beams), drawn, seed)
     prints = answered(simulate_prints(grid, draw, source, progress, cancel), drawn)
-    told = Spread.of(
+    spread = Spread.of(
         grid, prints, material.scatter, drawn=drawn, law=LAW, seed=seed, engine=source.engine
     )
-    return replace(result, scatter=told)
+    return replace(result, scatter=spread)
 
 
 def prints_source(material: Material, engine: Simulator | None = None) -> Source:

@@ -128,16 +128,10 @@ def filled(trials: TrialPoses, joints: int, beams: int) -> TrialPoses:
     frame = np.stack([np.eye(3), np.diag([-1.0, -1.0, 1.0])])[:, None]
     frames = trials.joints.shape[1]
 
-    def still(at: Any, by: int) -> Pose:
-        return Pose(
-            np.broadcast_to(np.eye(3), (count, frames, by, 3, 3)),
-            np.broadcast_to(at[:, None, None], (count, frames, by, 3)),
-        )
-
-    def extended(pose: Pose, other: Pose) -> Pose:
-        return Pose(
-            np.concatenate([pose.R, other.R], axis=2), np.concatenate([pose.p, other.p], axis=2)
-        )
+    def extended(pose: Pose, at: Any, by: int) -> Pose:
+        turn: Any = np.broadcast_to(np.eye(3), (count, frames, by, 3, 3))
+        place: Any = np.broadcast_to(at[:, None, None], (count, frames, by, 3))
+        return Pose(*(_behind(a, b) for a, b in zip(pose, (turn, place), strict=True)))
 
     return trials._replace(
         topology=topology._replace(
@@ -169,12 +163,17 @@ def filled(trials: TrialPoses, joints: int, beams: int) -> TrialPoses:
         ratio=grown(trials.ratio, 1, extra, 0.0),
         real=grown(trials.real, 1, more, 0.0),
         state=BeamState(
-            extended(trials.state.joints, still(away, more)),
-            extended(trials.state.middles, still(halfway, extra)),
+            extended(trials.state.joints, away, more),
+            extended(trials.state.middles, halfway, extra),
         ),
         joints=grown(trials.joints, 2, more, block),
         middles=grown(trials.middles, 2, extra, section),
     )
+
+
+def _behind(a: Any, b: Any) -> Any:
+    """Return arrays joined along the axis of joints or beams."""
+    return np.concatenate([a, b], axis=2)
 
 
 def joined(parts: Sequence[Any]) -> Any:

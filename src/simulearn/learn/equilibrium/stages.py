@@ -240,8 +240,8 @@ def first_shapes(
 ) -> tuple[BeamState, NDArray[np.float64], NDArray[np.bool_]]:
     """Return the shapes of trials by a law alone in frames 1 to 11, twists, and which have them."""
     count, joints, beams = len(batch), batch.flat.shape[1], len(batch.beams)
-    R = np.tile(np.eye(3), (count, 11, joints + beams, 1, 1))
-    p = np.zeros((count, 11, joints + beams, 3))
+    R: Any = np.tile(np.eye(3), (count, 11, joints + beams, 1, 1))
+    p: Any = np.zeros((count, 11, joints + beams, 3))
     twist, ended = np.zeros((count, 11, 2, beams, 6)), np.zeros(count, np.bool_)
     corners = corner_topology(batch.beams, batch.flat)
 
