@@ -107,7 +107,7 @@ def sampled(report: Report, grids: list[Grid], material: Material, count: int | 
     count = count or source.count
     rows, shares, begun = [], [], perf_counter()
     for k, grid in enumerate(grids):
-        draw = draw_prints(material, len(grid.beams), count)
+        draw = draw_prints(material, len(grid.beams), count, seed=k)
         prints = simulate_prints(grid, draw, source)
         centres = prints.centres[prints.converged]
         share = 100 * spans(centres).std(axis=0, ddof=1) / grid.dimension
