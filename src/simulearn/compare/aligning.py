@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from simulearn.compare.measurement import Numbers
+from simulearn.errors import Message
 from simulearn.rigid import fit_rotation
 
 MIRRORED = 2.0  # times as near must a mirrored measurement be
@@ -70,3 +71,21 @@ def aligned(measured: Numbers, simulated: Numbers) -> Pose:
     plain, mirrored = (rigid(measured, simulated, mirror) for mirror in (False, True))
     off, other = (rms(pose(measured), simulated) for pose in (plain, mirrored))
     return mirrored if off > LEAST and other * MIRRORED < off and len(measured) > 4 else plain
+
+
+def ambiguous(count: int, what: str) -> Message:
+    """Return the warning about several poses or assignments that fit equally well."""
+    text = (
+        f"{count} {what} fit equally well, since the grid is about symmetric; the first is taken, "
+        "and numbers may be exchanged: name the joints in a table to be sure"
+    )
+    return Message("pose-ambiguous", "measurement", text)
+
+
+def mirrored() -> Message:
+    """Return the warning about a measurement that fits mirrored only."""
+    text = (
+        "the measurement fits far better mirrored, as where two axes were exchanged; it is "
+        "compared mirrored"
+    )
+    return Message("pose-mirrored", "measurement", text)

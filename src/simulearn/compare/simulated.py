@@ -6,6 +6,7 @@ has the ends of its beams, whose sides say where the joint is.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -88,7 +89,7 @@ def stations_of(result: Result) -> Stations:
         along.append(middles[-1, 6:] - middles[-1, 3:6])
         up.append(corners[-1, :3, 2:].mean(axis=1) - corners[-1, :3, :2].mean(axis=1))
         own = [start, *range(first, first + 3), end]
-        links += list(zip(own, own[1:], strict=False))
+        links += list(pairwise(own))
         first += 3
     return Stations(
         np.concatenate(centres),

@@ -62,7 +62,7 @@ def read_table(text: str) -> JointPlaces:
 
 
 def _of_joints(rows: Sequence[Row], columns: Columns, comma: bool) -> JointPlaces:
-    """Return the places of joints that are named; rows without a place are passed over, and said."""
+    """Return the places of joints that are named; rows without a place are passed over."""
     places: dict[int, list[float]] = {}
     empty: list[int] = []
     for row in rows:
