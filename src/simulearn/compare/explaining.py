@@ -20,8 +20,6 @@ from simulearn.errors import Cancel, stop_if
 from simulearn.grid import Grid
 from simulearn.material import Material
 
-LITTLE = 0.3  # explained by less, a deviation is not explained
-EQUALLY = 0.05  # less than the best explains as well
 ALIKE = 0.95  # cosine of changes of shape that cannot be told apart
 
 Simulate = Callable[[Sequence[Material]], tuple[Numbers, Numbers]]

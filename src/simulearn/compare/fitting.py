@@ -154,7 +154,7 @@ class _Fitting:
             if keep.sum() < FEWEST:
                 return None
             w = 1 / (1 + (off[keep] / ROBUST) ** 2)
-            # A small turn t about the centre and a move m take the patch's plane by n . (m + t x p).
+            # A small turn t about the centre and a move m shift a plane by n . (m + t x p).
             rows = np.hstack([own[keep], np.cross(local[index[keep]], own[keep])])
             scale = 1 / ROBUST**2
             left = scale * (rows * w[:, None]).T @ rows + prior

@@ -1,4 +1,4 @@
-"""A scan on its simulation: without what is no grid, in its pose, each joint by its neighbourhood."""
+"""A scan on its simulation: cleared of all else, in its pose, each joint by its neighbourhood."""
 
 from dataclasses import dataclass
 
