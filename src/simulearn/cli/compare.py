@@ -69,8 +69,8 @@ def compare(
     as_json: Json = False,
 ) -> None:
     """Compare a print with its simulation, and say what change of the material explains it."""
-    from simulearn.compare import read_measurement
     from simulearn.compare import compare as compared
+    from simulearn.compare import read_measurement
     from simulearn.compare.report import figures
     from simulearn.simulate import engine as engine_of
 

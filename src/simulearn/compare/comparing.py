@@ -124,7 +124,7 @@ def compare(
     )
     seen = deviation.measured
     residual = rms(joints[seen], simulated[seen])
-    messages += _plausible(residual, result.grid, scanned)
+    messages += _plausible(residual, result.grid, scanned, messages)
     messages += _missing(deviation, scanned)
 
     def later(done: int, total: int) -> None:
@@ -209,7 +209,7 @@ def _enough(places: Numbers, grid: Grid) -> None:
         raise InputError(text, "measurement-line", "measurement")
 
 
-def _plausible(residual: float, grid: Grid, scanned: bool) -> list[Message]:
+def _plausible(residual: float, grid: Grid, scanned: bool, before: list[Message]) -> list[Message]:
     """Return a warning where a measurement hardly fits, or raise where it does not."""
     share = residual / grid.dimension
     if share < FAR:
@@ -218,6 +218,7 @@ def _plausible(residual: float, grid: Grid, scanned: bool) -> list[Message]:
     other = "another grid" if scanned else "another grid, or have other numbers"
     if share > OTHER:
         text = f"{what} dimension; no print is so far off, so it must be {other}"
+        text += "".join(f"; {m.message}" for m in before if m.code == "joints-exchanged")
         raise InputError(text, "measurement-other", "measurement")
     return [Message("measurement-far", "measurement", f"{what} dimension; it may be {other}")]
 

@@ -178,7 +178,8 @@ class _Curve:
             aim = float(np.clip(self.nominal + guess, low - wide / 4, high + wide / 4))
             ends = sorted((self.nominal, aim + (aim - self.nominal) / 2))
             bounds = (ends[0] - 0.2 * self.parameter.step, ends[1] + 0.2 * self.parameter.step)
-        bounds = (possible(self.parameter, bounds[0]), possible(self.parameter, bounds[1]))
+        edges = (low - wide / 4, high + wide / 4)  # shapes far beyond the family are not looked at
+        bounds = tuple(possible(self.parameter, float(np.clip(x, *edges))) for x in bounds)
         if bounds[1] - bounds[0] < 1e-9:
             return bounds[0]
         found = minimize_scalar(
