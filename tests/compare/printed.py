@@ -21,15 +21,15 @@ def grid(cells=(2, 2), length=45.0):
 def numbers(material):
     """Return what a material differs by from the base, one number for each parameter."""
     s, b = material.shrinkage, BASE.shrinkage
-    return dict(
-        strain=s.active / b.active - 1,
-        passive=(s.stress_passive - b.stress_passive) / b.stress_active,
-        joint=(s.stress_joint - b.stress_joint) / b.stress_active,
-        shell=s.shell / s.active - b.shell / b.active,
-        curl=s.curl / b.active,
-        weight=material.gravity.density / BASE.gravity.density - 1,
-        creep=material.creep.amplitude - BASE.creep.amplitude,
-    )
+    return {
+        "strain": s.active / b.active - 1,
+        "passive": (s.stress_passive - b.stress_passive) / b.stress_active,
+        "joint": (s.stress_joint - b.stress_joint) / b.stress_active,
+        "shell": s.shell / s.active - b.shell / b.active,
+        "curl": s.curl / b.active,
+        "weight": material.gravity.density / BASE.gravity.density - 1,
+        "creep": material.creep.amplitude - BASE.creep.amplitude,
+    }
 
 
 def bend(material=BASE, chiral=0.5):

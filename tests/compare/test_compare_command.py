@@ -3,10 +3,10 @@
 import json
 
 import numpy as np
+import printed
 import pytest
 from PIL import Image
 
-import printed
 import simulearn.simulate.members as members
 from simulearn.grid import write_grid
 from simulearn.simulate import ENGINES

@@ -3,9 +3,9 @@
 import threading
 
 import numpy as np
+import printed
 import pytest
 
-import printed
 import simulearn.simulate.members as members
 from simulearn.compare import JointPlaces, compare
 from simulearn.compare.changes import parameters, steps

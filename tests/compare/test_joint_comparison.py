@@ -1,9 +1,9 @@
 """Measured joints beside simulated ones: poses, numbers, mirrors, and what cannot be compared."""
 
 import numpy as np
+import printed
 import pytest
 
-import printed
 from simulearn.compare import JointPlaces, compare
 from simulearn.compare.deviation import without_motion
 from simulearn.compare.matching import matches

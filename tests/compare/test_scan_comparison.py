@@ -1,9 +1,9 @@
 """Scans of prints in any pose, with a table, strays and holes: the joints are found again."""
 
 import numpy as np
+import printed
 import pytest
 
-import printed
 from simulearn.compare import Scan, compare
 from simulearn.compare.aligning import rigid
 from simulearn.compare.clutter import without_table
