@@ -36,8 +36,9 @@ class Camera:
 
     Attributes:
         numbers: (10,) turn (3) as a rotation vector from the sheet's axes to the camera's, place of
-            the sheet's origin before the camera (3) mm, log of the focal length over `focal`, the
-            axis's distance from the middle (2) in diagonals, bend.
+            the sheet's origin before the camera (3) mm, the third over what the focal length is
+            more than `focal`, so that the picture hardly depends on the length; log of the focal
+            length over `focal`, the axis's distance from the middle (2) in diagonals, bend.
         size: of the picture, pixels.
         focal: expected focal length, pixels.
         covariance: (10, 10) of the numbers; zero where nothing is known of it.
@@ -60,10 +61,15 @@ class Camera:
         """Fitted focal length, pixels."""
         return float(self.focal * np.exp(self.numbers[6]))
 
+    @property
+    def shift(self) -> Array:
+        """(3,) place of the sheet's origin in the camera's axes, mm."""
+        return self.numbers[3:6] * [1, 1, np.exp(self.numbers[6])]
+
     @cached_property
     def place(self) -> Array:
         """(3,) of the camera over the sheet, mm."""
-        return -self.turn.T @ self.numbers[3:6]
+        return -self.turn.T @ self.shift
 
     @property
     def tilt(self) -> float:
@@ -77,7 +83,7 @@ class Camera:
 
     def pixels(self, points: ArrayLike) -> Array:
         """Return where points (..., 3) mm over the sheet are in the photo: (..., 2) pixels."""
-        seen = np.asarray(points, float) @ self.turn.T + self.numbers[3:6]
+        seen = np.asarray(points, float) @ self.turn.T + self.shift
         flat = seen[..., :2] / seen[..., 2:]
         bent = flat * (1 + self.numbers[9] * (flat**2).sum(axis=-1, keepdims=True))
         return np.asarray(self.axis + self.focal_length * bent)
