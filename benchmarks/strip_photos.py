@@ -13,6 +13,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from PIL import Image
 from scipy import sparse
@@ -342,7 +343,9 @@ def _sheet_light(scene: Scene) -> NDArray[np.float32]:
         for direction in directions:
             hidden = np.zeros(size, np.uint8)
             for strip in scene.strips:
-                outline = strip.outline()
+                # cv2.fillPoly makes it half a dot larger.
+                inner = shapely.Polygon(strip.outline()).buffer(-0.5 / DOTS)
+                outline = np.array(inner.exterior.coords)
                 for part in np.linspace(0, 1, 14):
                     moved = outline - direction[:2] / direction[2] * strip.width * part
                     _fill(hidden, (moved - CORNER) * [DOTS, -DOTS] + [0, size[0]], 1)

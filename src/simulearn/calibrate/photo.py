@@ -10,15 +10,18 @@ The deviations add up what differs by chance: where the camera was (the strip is
 cameras that the markers allow too), the size of the printed sheet, and the edges themselves.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from simulearn.calibrate.photo_camera import Camera
 from simulearn.calibrate.photo_file import Photo, read_photo
+from simulearn.calibrate.photo_measures import Measures, gap, measures
 from simulearn.calibrate.photo_outline import Outline, find_outline
 from simulearn.calibrate.photo_reference import Reference, scale_reference, sheet_reference
 from simulearn.calibrate.photo_sheet import UP, printed_size
@@ -32,7 +35,6 @@ Array = NDArray[np.float64]
 Up = Literal["inside", "outside", "arrow", "left", "right", "top", "bottom"]
 UPS: tuple[str, ...] = get_args(Up)
 IN_PICTURE = {"left": (-1, 0), "right": (1, 0), "top": (0, -1), "bottom": (0, 1)}
-EDGE = 0.2  # pixels, deviation of an edge that all its points share
 UNSURE = 0.35  # between the direction that is up and that of the hollow side, cosine
 THICK = 0.12  # relative difference from the section's thickness that is told
 ROUGH = 0.25  # mm, residual of what is no strip
@@ -44,66 +46,69 @@ class StripPhoto:
     """A strip measured in a photo.
 
     Attributes:
-        name: of the photo.
-        chord: between the tips of the hollow side, mm.
-        rise: largest gap between that chord and the hollow side, mm; with a sign if `signed`.
-        signed: whether the rise has a sign: + hollow on the side that was up in the printer.
-        chord_deviation, rise_deviation: standard deviations, mm.
-        length: along the centre line, mm.
-        thickness: mm.
-        curve: the strip on the sheet.
-        outline: its measured outline.
-        fit: of the curve to it.
+        photo: what it was measured in.
+        section: of the strip.
+        measures: chord and rise of its hollow side, with their deviations.
+        sign: of the rise: 1 hollow on the side that was up in the printer, -1 on the other one;
+            None where that is not known.
+        fit: of a curve to its outline.
+        outline: its edges.
         reference: what gave the scale.
         messages: what qualifies the answer.
     """
 
-    name: str
-    chord: float
-    rise: float
-    signed: bool
-    chord_deviation: float
-    rise_deviation: float
-    length: float
-    thickness: float
-    curve: Curve
-    outline: Outline
+    photo: Photo
+    section: Section
+    measures: Measures
+    sign: float | None
     fit: Fit
+    outline: Outline
     reference: Reference
     messages: tuple[Message, ...]
+
+    @property
+    def chord(self) -> float:
+        """Distance of the tips of the hollow side, mm."""
+        return self.measures.chord
+
+    @property
+    def rise(self) -> float:
+        """Largest gap between that chord and the hollow side, mm; with a sign if it is known."""
+        return self.measures.rise * (self.sign or 1.0)
+
+    @property
+    def curve(self) -> Curve:
+        """The strip on the sheet."""
+        return self.fit.curve
 
     @property
     def camera(self) -> Camera:
         """The camera over the sheet."""
         return self.reference.camera
 
-    @property
-    def height(self) -> Array:
-        """(2,) heights over the sheet at which sides and ends are seen, 0 or 1 of the width."""
-        return np.array([0.0, 1.0])
-
     def to_dict(self) -> dict[str, Any]:
         """Return the answer for programs: lengths in mm."""
-        middle = _gap(self.curve.line)
+        chord, rise, _ = gap(self.curve.line)
+        numbers = {
+            "chord": self.chord,
+            "rise": self.rise,
+            "chord_deviation": self.measures.chord_deviation,
+            "rise_deviation": self.measures.rise_deviation,
+            "length": self.curve.length,
+            "thickness": self.curve.thickness,
+            "centre_line_chord": chord,
+            "centre_line_rise": rise,
+            "residual": self.fit.residual,
+            "blur": self.outline.blur,
+            "tilt": self.camera.tilt,
+            "distance": float(self.camera.place[2]),
+        }
         return {
-            "photo": self.name,
-            "chord": round(self.chord, 3),
-            "rise": round(self.rise, 3),
-            "signed": self.signed,
-            "chord_deviation": round(self.chord_deviation, 3),
-            "rise_deviation": round(self.rise_deviation, 3),
-            "centre_line": {
-                "chord": round(middle[0], 3),
-                "rise": round(middle[1], 3),
-                "length": round(self.length, 3),
-            },
-            "thickness": round(self.thickness, 3),
-            "residual": round(self.fit.residual, 4),
-            "blur": round(self.outline.blur, 4),
+            "photo": self.photo.name,
+            "signed": self.sign is not None,
             "markers": self.reference.markers,
-            "tilt": round(self.camera.tilt, 2),
-            "distance": round(float(self.camera.place[2]), 1),
-            "messages": [vars(message) for message in self.messages],
+            **{key: round(value, 4) for key, value in numbers.items()},
+            "messages": [asdict(message) for message in self.messages],
         }
 
 
@@ -167,46 +172,19 @@ def _measured(
             "photo-no-strip",
         )
     curve = fit.curve
-    chord, rise = _gap(_hollow_line(curve))
-    sign, signed = _sign(curve, reference, up)
-    chord_deviation, rise_deviation = _deviations(curve, reference, outline, section.width)
-    messages = (*reference.messages, *_remarks(fit, rise, section, outline, reference))
-    return StripPhoto(
-        photo.name,
-        chord,
-        sign * rise,
-        signed,
-        chord_deviation,
-        rise_deviation,
-        curve.length,
-        curve.thickness,
-        curve,
-        outline,
-        fit,
-        reference,
-        messages,
-    )
+    sign = _sign(curve, reference, up)
+    result = measures(curve, reference, section.width, outline.blur)
+    remarks = _remarks(curve, result.rise, section, reference)
+    messages = (*reference.messages, *remarks)
+    return StripPhoto(photo, section, result, sign, fit, outline, reference, messages)
 
 
-def _hollow_line(curve: Curve) -> Array:
-    """Return the hollow side (N, 2) of a strip, on which a straight edge lies."""
-    return curve.beside(curve.hollow * curve.thickness / 2)
-
-
-def _gap(line: Array) -> tuple[float, float]:
-    """Return the distance of the ends of a line, and its largest distance from that chord."""
-    chord = line[-1] - line[0]
-    length = float(np.linalg.norm(chord))
-    off = (line - line[0]) @ np.array([-chord[1], chord[0]]) / length
-    return length, float(np.abs(off).max())
-
-
-def _sign(curve: Curve, reference: Reference, up: Up | None) -> tuple[float, bool]:
-    """Return the sign of the rise, and whether it is known."""
+def _sign(curve: Curve, reference: Reference, up: Up | None) -> float | None:
+    """Return the sign of the rise; None where it is not known."""
     if up is None:
-        return 1.0, False
+        return None
     if up in ("inside", "outside"):
-        return (1.0 if up == "inside" else -1.0), True
+        return 1.0 if up == "inside" else -1.0
     start, end = curve.line[0], curve.line[-1]
     across = np.array([start[1] - end[1], end[0] - start[0]]) / np.linalg.norm(end - start)
     if up == "arrow":
@@ -227,69 +205,31 @@ def _sign(curve: Curve, reference: Reference, up: Up | None) -> tuple[float, boo
             "tell its sides apart; say inside or outside of the curve",
             "photo-up",
         )
-    return float(np.sign(cosine)), True
-
-
-def _deviations(
-    curve: Curve, reference: Reference, outline: Outline, width: float
-) -> tuple[float, float]:
-    """Return the standard deviations of chord and rise, mm."""
-    camera = reference.camera
-    line = _hollow_line(curve)
-    tips = line[[0, -1]]
-    apex = line[_highest(line)]
-    keys = np.array([tips[0], tips[1], apex])
-    foot = camera.place[:2]
-    ahead = curve.angle[[0, -1]]
-    outward = np.stack([np.cos(ahead), np.sin(ahead)], axis=1) * [[-1], [1]]
-    bulge = -(tips.mean(axis=0) - apex)
-    bulge = -bulge if bulge @ (tips.mean(axis=0) - apex) > 0 else bulge
-    inward = tips.mean(axis=0) - apex  # the normal of the hollow side at its highest point
-    normals = np.array([*outward, inward])
-    heights = np.where(((keys - foot) * normals).sum(axis=1) > 0, width, 0.0)
-    seen = camera.pixels(np.column_stack([keys, heights]))
-    values = np.array([_triangle(keys)])
-    others = np.array(
-        [_triangle(factor * other.on_plane(seen, heights)) for other, factor in reference.others]
-    )
-    by_camera = np.sqrt(((others - values) ** 2).mean(axis=0))
-    by_size = reference.size_deviation * np.abs(values[0])
-    # Two edges shared by many points, beside the chance of each point.
-    pixel = 1 / camera.scale_at(keys.mean(axis=0))
-    by_edge = np.sqrt(2) * EDGE * pixel + outline.blur / 50
-    total = np.sqrt(by_camera**2 + by_size**2 + by_edge**2)
-    return float(total[0]), float(total[1])
-
-
-def _highest(line: Array) -> int:
-    chord = line[-1] - line[0]
-    return int(np.argmax(np.abs((line - line[0]) @ np.array([-chord[1], chord[0]]))))
-
-
-def _triangle(keys: Array) -> Array:
-    """Return chord and rise of two tips and the highest point (3, 2)."""
-    chord = keys[1] - keys[0]
-    length = float(np.linalg.norm(chord))
-    return np.array([length, abs((keys[2] - keys[0]) @ np.array([-chord[1], chord[0]])) / length])
+    return float(np.sign(cosine))
 
 
 def _remarks(
-    fit: Fit, rise: float, section: Section, outline: Outline, reference: Reference
-) -> list[Message]:
-    curve = fit.curve
-    messages = []
-    ratio = curve.thickness / section.thickness
-    if abs(ratio - 1) > THICK:
+    curve: Curve, rise: float, section: Section, reference: Reference
+) -> Iterator[Message]:
+    """Yield what else a person should know of a strip."""
+    if abs(curve.thickness / section.thickness - 1) > THICK:
         text = (
             f"the strip looks {curve.thickness:.1f} mm thick and not {section.thickness:g}; "
             "see in the picture whether a shadow was taken for it, and whether it lies on its side"
         )
-        messages.append(Message("photo-thickness", "photo", text))
+        yield Message("photo-thickness", "photo", text)
     line = curve.line
     chord = line[-1] - line[0]
     off = (line - line[0]) @ np.array([-chord[1], chord[0]]) / np.linalg.norm(chord)
-    other = min(off.max(), -off.min())
-    if other > WAVY * max(rise, 1.0):
+    other = float(min(off.max(), -off.min()))
+    if other > WAVY * max(rise, 2.0):
         text = f"the strip bends to both sides, by {other:.1f} mm to the other one"
-        messages.append(Message("photo-wavy", "photo", text))
-    return messages
+        yield Message("photo-wavy", "photo", text)
+    if reference.markers:
+        around = ConvexHull(reference.camera.on_plane(reference.points)).equations
+        if (around[:, :2] @ line.T + around[:, 2:] > 0).any():
+            text = (
+                "the strip lies outside of the markers that can be seen, so that it is measured "
+                "less well than said; photograph it with all markers"
+            )
+            yield Message("photo-outside", "photo", text)

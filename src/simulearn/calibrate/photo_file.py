@@ -5,6 +5,7 @@ camera was where the sheet alone does not, as in a photo from straight above.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,7 @@ class Photo:
         """Width and height, pixels."""
         return self.pixels.shape[1], self.pixels.shape[0]
 
-    @property
+    @cached_property
     def light(self) -> NDArray[np.float32]:
         """(H, W, 3) amounts of light of 0 to 1: sRGB without its tone curve (IEC 61966-2-1)."""
         level = np.arange(256) / 255
