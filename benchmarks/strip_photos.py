@@ -308,7 +308,7 @@ def _page(scene: Scene, random: np.random.Generator) -> NDArray[np.float32]:
         size = round(PAGE[1] * DOTS), round(PAGE[0] * DOTS), 3
         page = np.full(size, 0.85, np.float32)
         for k in range(101):
-            start = np.array(RULER[0]) + [k, 0]
+            start = np.add(RULER[0], [k, 0])
             long = 8 if k % 10 == 0 else 4
             ends = [_dots(page, start), _dots(page, start - [0, long])]
             cv2.line(page, *ends, (0.05, 0.05, 0.05), 2)
@@ -411,9 +411,7 @@ def random_scene(seed: int, **changes: object) -> Scene:
     joint = 7.2
     pieces = ((joint, 0.0), (net / 2, bend * random.uniform(0.9, 1.1)), (net / 2, bend), (joint, 0))
     place = random.uniform([80, 105], [100, 135])
-    strip = Strip(
-        pieces, tuple(place), random.uniform(0, 360), random.uniform(3.7, 4.3), 7.2
-    )
+    strip = Strip(pieces, tuple(place), random.uniform(0, 360), random.uniform(3.7, 4.3), 7.2)
     lens = Lens(
         distance=random.uniform(300, 600),
         tilt=random.uniform(0, 20),

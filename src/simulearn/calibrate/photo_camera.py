@@ -111,9 +111,7 @@ class Camera:
         return [replace(self, numbers=numbers) for numbers in drawn]
 
 
-def fit_camera(
-    places: Array, pixels: Array, size: tuple[int, int], focal: float | None
-) -> Camera:
+def fit_camera(places: Array, pixels: Array, size: tuple[int, int], focal: float | None) -> Camera:
     """Return the camera that shows points of the sheet where they are in the photo.
 
     Args:

@@ -29,7 +29,8 @@ def edge_offsets(
         points: (N, 2) pixels.
         normals: (N, 2) outwards, of length 1.
         reach: how far from the points the edge is looked for, pixels.
-        near, far: from where to where the light inside and outside is taken, pixels from the edge.
+        near: from where on the light inside and outside is taken, pixels from the edge.
+        far: to where it is taken.
         contrast: least difference between inside and outside.
 
     Returns:

@@ -73,7 +73,9 @@ def read_photo(path: Path | str) -> Photo:
     except (Image.UnidentifiedImageError, Image.DecompressionBombError) as error:
         hint = "a photo is a JPEG or PNG file"
         if path.suffix.lower() in (".heic", ".heif", ".dng"):
-            hint = f"of a {path.suffix} file save a copy as JPEG, which telephones do when they share"
+            hint = (
+                f"of a {path.suffix} file save a copy as JPEG, which telephones do when they share"
+            )
         raise _wrong(path, f"is not a picture that can be read; {hint}") from error
     except (OSError, SyntaxError, ValueError) as error:  # as of a file that ends in its middle
         if isinstance(error, InputError):

@@ -106,15 +106,18 @@ def _too_few(photo: Photo, grey: NDArray[np.uint8], count: int) -> InputError:
     """Return the error that says how many markers there are, and what may be the reason."""
     import cv2
 
-    size = round(800 * grey.shape[1] / max(grey.shape)), round(800 * grey.shape[0] / max(grey.shape))
+    size = (
+        round(800 * grey.shape[1] / max(grey.shape)),
+        round(800 * grey.shape[0] / max(grey.shape)),
+    )
     small = cv2.resize(grey, size, interpolation=cv2.INTER_AREA).astype(np.float64) / 255
     blurred = float(cv2.Laplacian(small, cv2.CV_64F).var()) < SHARP
     number = {0: "none", 1: "1 only"}.get(count, f"{count} only")
     why = "; the photo is blurred: hold still, and touch the strip on the screen to focus"
     return InputError(
-        f"{photo.name}: of the {MARKERS} markers of the sheet {number} can be seen, and {FEWEST} are "
-        "needed. Photograph the whole sheet of `simulearn calibrate sheet` from above; without a "
-        f"sheet give a scale{why if blurred else ''}",
+        f"{photo.name}: of the {MARKERS} markers of the printed sheet {number} can be seen, and "
+        f"{FEWEST} are needed; photograph the whole sheet from above, or give a scale if there is "
+        f"no sheet{why if blurred else ''}",
         "photo-markers",
         photo.name,
     )

@@ -1,4 +1,4 @@
-"""Chord and rise of a strip's hollow side, where they are seen in the photo, and how sure they are."""
+"""Chord and rise of a strip's hollow side: how long, how surely, and where in the photo."""
 
 from dataclasses import dataclass
 
@@ -63,7 +63,10 @@ def measures(curve: Curve, reference: Reference, width: float, blur: float) -> M
     heights = np.where(away > 0, width, 0.0)
     seen = camera.pixels(np.column_stack([points, heights]))
     others = np.array(
-        [factor * np.array(_of(other.on_plane(seen, heights))) for other, factor in reference.others]
+        [
+            factor * np.array(_of(other.on_plane(seen, heights)))
+            for other, factor in reference.others
+        ]
     )
     values = np.array([chord, rise])
     by_camera = np.sqrt(((others - _of(points)) ** 2).mean(axis=0))

@@ -138,9 +138,7 @@ def _from_above(
     size = np.array(camera.size)
     beyond = ((at < 0) | (at > size - 1)).any(axis=-1)
     shrunk = max(1, int(camera.scale_at([(left + right) / 2, (low + high) / 2]) / COARSE))
-    small = cv2.resize(
-        light, (size[0] // shrunk, size[1] // shrunk), interpolation=cv2.INTER_AREA
-    )
+    small = cv2.resize(light, (size[0] // shrunk, size[1] // shrunk), interpolation=cv2.INTER_AREA)
     at = (at + 0.5) * (np.array(small.shape[1::-1]) / size) - 0.5
     picture = cv2.remap(
         small,

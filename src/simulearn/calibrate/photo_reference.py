@@ -30,6 +30,7 @@ MARGIN = 1.5  # mm from the frame, within which nothing is looked for
 NOT_MEASURED, MEASURED = 0.0025, 0.0005  # relative deviation of a printed sheet's size
 HELD = 6.0  # degrees, deviation of a camera that is meant to look straight down
 POINT = 1.5  # pixels, deviation of a point that a person read off
+NEARBY = 0.8  # of the length of a scale, within which the strip is looked for around it
 FAR_OFF = 1.0  # pixels, residual of the markers of a sheet that is not flat
 STEEP = 30.0  # degrees
 
@@ -93,7 +94,9 @@ def sheet_reference(photo: Photo, printed: tuple[float, float] | None) -> Refere
         text = "the photo was cropped or edited, so that its lens is known less well"
         messages.append(_message("photo-cropped", text))
     if camera.tilt > STEEP:
-        text = f"the photo was taken {camera.tilt:.0f} degrees from straight above; below 20 is good"
+        text = (
+            f"the photo was taken {camera.tilt:.0f} degrees from straight above; below 20 is good"
+        )
         messages.append(_message("photo-tilt", text))
     return Reference(
         camera,
@@ -121,7 +124,10 @@ def scale_reference(photo: Photo, text: str, height: float) -> Reference:
     ends, length = _scale(text, photo)
     pixels_in_mm = float(np.linalg.norm(ends[1] - ends[0])) / length
     camera = camera_above(pixels_in_mm, height, photo.size, photo.focal)
-    corners = camera.on_plane([[0, photo.size[1] - 1], [photo.size[0] - 1, 0]])
+    low, high = camera.on_plane([[0, photo.size[1] - 1], [photo.size[0] - 1, 0]])
+    on_table = camera.on_plane(ends)
+    low = np.maximum(low, on_table.min(axis=0) - NEARBY * length)
+    high = np.minimum(high, on_table.max(axis=0) + NEARBY * length)
     random = np.random.default_rng(0)
     deviation = np.zeros(10)
     deviation[:2] = np.radians(HELD)
@@ -136,13 +142,13 @@ def scale_reference(photo: Photo, text: str, height: float) -> Reference:
         moved = ends + POINT * random.standard_normal(ends.shape)
         others.append((other, length / _distance(other.on_plane(moved, height))))
     note = (
-        "a scale alone undoes no perspective: the photo is taken to be from straight above, give or "
-        f"take {HELD:g} degrees; the printed sheet measures more exactly"
+        "a scale alone undoes no perspective: the photo is taken to be from straight above, give "
+        f"or take {HELD:g} degrees; the printed sheet measures more exactly"
     )
     return Reference(
         camera,
         tuple(others),
-        (*map(float, corners[0]), *map(float, corners[1])),
+        (float(low[0]), float(low[1]), float(high[0]), float(high[1])),
         None,
         MEASURED,
         ends,

@@ -166,9 +166,7 @@ def _candidates(light: Light, dark: bool | None) -> Iterator[tuple[str, Mask]]:
             yield from (("brighter", above > level * most) for level in BRIGHTER)
 
 
-def _bands(
-    mask: Mask, kind: str, width: float, beyond: Mask, apart: Mask | None
-) -> Iterator[Band]:
+def _bands(mask: Mask, kind: str, width: float, beyond: Mask, apart: Mask | None) -> Iterator[Band]:
     """Yield the long parts of a mask whose width may be a strip's."""
     import cv2
 
@@ -221,7 +219,7 @@ def _measured(mask: Mask, kind: str, edge: bool) -> Band | None:
     widths = count[inner] / np.maximum(step[inner], 1e-9)
     width = float(np.median(widths))
     return Band(
-        mask, middle + [left - 1, top - 1], width, float(widths.std() / width), kind, edge
+        mask, np.add(middle, [left - 1, top - 1]), width, float(widths.std() / width), kind, edge
     )
 
 

@@ -166,7 +166,8 @@ def _rise(result: "StripPhoto", text: "FormText | None") -> tuple[float, str]:
     if text.expected_sign is None:
         raise InputError(
             f"strip {text.strip} has actuators on no side or on both, so that its rise needs a "
-            "sign: --up inside if it is hollow on the side that was up in the printer, else outside",
+            "sign: --up inside if it is hollow on the side that was up in the printer, else "
+            "--up outside",
             "photo-up",
         )
     half = "top" if text.expected_sign > 0 else "bottom"

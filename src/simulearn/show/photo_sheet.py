@@ -100,7 +100,11 @@ def _words(ax: Any, dark: bool) -> None:
     """Write what to do around the frame, where no marker is."""
     small = {"fontsize": 7, "color": INK, "ha": "center", "va": "center"}
     middle, top = FIELD[0] / 2, FIELD[1]
-    kind = "dark sheet, for light strips" if dark else "white sheet, for strips of any colour but white"
+    kind = (
+        "dark sheet, for light strips"
+        if dark
+        else "white sheet, for strips of any colour but white"
+    )
     ax.text(middle, -8, f"SimuLearn: {kind}. Print at 100 %, not “fit to page”.", **small)
     ax.text(
         middle,
