@@ -81,7 +81,7 @@ def _strip(ax: Any, strip: StripPhoto, edge: NDArray[np.float64]) -> None:
 def _scale(ax: Any, strip: StripPhoto, low: Any, high: Any) -> None:
     """Draw a bar of a round length on the sheet, at the lower edge of what is shown."""
     corner = np.array([low[0] + 0.06 * (high - low)[0], high[1] - 0.06 * (high - low)[1]])
-    start, end = strip.camera.on_plane([corner, corner + (0.5 * (high - low)[0], 0)])
+    start, end = strip.camera.on_plane([corner, np.add(corner, [0.5 * (high - low)[0], 0])])
     length = nice_length(2 * float(np.linalg.norm(end - start)))
     direction = (end - start) / np.linalg.norm(end - start)
     ends = np.array([start, start + length * direction])
