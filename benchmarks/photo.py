@@ -1,6 +1,6 @@
 """How exactly chord and rise of a strip are read from photos, drawn with known answers.
 
-    python benchmarks/photo.py [--scenes 60]
+    python benchmarks/photo.py [--scenes 60] [--picture]
 
 Each scene is a strip, a camera, lamps and a colour as people may have them (`strip_photos.py`).
 """
@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from report import Report
+from report import FOLDER, Report
 from simulearn.calibrate.photo import StripPhoto, measure_photo
 from simulearn.errors import InputError
 from simulearn.material import load_material
@@ -21,6 +21,7 @@ from strip_photos import RULER, Scene, random_scene, save
 
 SECTION = load_material("pla-hot-water").section
 SIZE = (2000, 1500)
+PICTURE = FOLDER.parent / "pictures" / "photo.png"
 
 
 def sized(scene: Scene, **lens: object) -> Scene:
@@ -74,7 +75,12 @@ def main() -> None:
     """Measure all groups and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--scenes", type=int, default=60, help="photos of the sheet")
-    count = parser.parse_args().scenes
+    parser.add_argument("--picture", action="store_true", help="only draw the page's picture")
+    arguments = parser.parse_args()
+    if arguments.picture:
+        picture()
+        return
+    count = arguments.scenes
     few = max(2, count // 10)
     report = Report("photo", "Strips measured in photos")
     plain = [
@@ -118,6 +124,22 @@ def main() -> None:
     refused = [line for _, lines in results for line in lines]
     report.say("Refused: " + ("; ".join(refused) or "none") + ".")
     report.save()
+
+
+def picture() -> None:
+    """Draw what is found in one photo, for the page on measuring."""
+    from PIL import Image
+
+    from simulearn.show.photo import photo_picture
+
+    with TemporaryDirectory() as folder:
+        path = save(random_scene(2), Path(folder) / "photo.jpg")
+        photo_picture(measure_photo(path, SECTION, up="inside")).savefig(
+            drawn := Path(folder) / "found.png", dpi=150
+        )
+        with Image.open(drawn) as image:
+            few = image.convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE)
+        few.save(PICTURE, optimize=True)
 
 
 if __name__ == "__main__":
