@@ -241,9 +241,7 @@ def engine(
             f'engine "{name}" is not known; known are {known}', "engine-unknown", "engine"
         )
     if mesh is not None and name != "fea":
-        raise InputError(
-            f'engine "{name}" takes no mesh; only "fea" does', "engine-mesh", "mesh"
-        )
+        raise InputError(f'engine "{name}" takes no mesh; only "fea" does', "engine-mesh", "mesh")
     if mesh is not None and mesh not in MESHES:
         known = ", ".join(MESHES)
         raise InputError(f'mesh "{mesh}" is not known; known are {known}', "mesh-unknown", "mesh")

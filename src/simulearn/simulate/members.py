@@ -53,9 +53,7 @@ def last_frames(
     sections: Any = np.full((count, many, 3, 4, 3), np.nan)
     for t, material in enumerate(materials):
         try:
-            trial = simulate_grid(
-                grid, material, factors=None if factors is None else factors[t]
-            )
+            trial = simulate_grid(grid, material, factors=None if factors is None else factors[t])
         except ComputationError:
             continue
         joints[t], sections[t] = trial.joints[-1], trial.beams[-1]
