@@ -170,7 +170,7 @@ def _measured(
     if fit.residual > ROUGH or fit.used.mean() < USED:
         raise InputError(
             "what was found is not as evenly thick as a strip is, or a shadow hides its edge; use "
-            "light from all around, and lay nothing on the strip",
+            "light from all around, and the dark sheet for a white strip",
             "photo-no-strip",
         )
     curve = fit.curve
