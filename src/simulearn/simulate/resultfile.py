@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
 from simulearn.grid import grid_from_dict, grid_to_dict
-from simulearn.material import Identity
+from simulearn.material import Identity, name_of
 from simulearn.schedule import Snap
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
 
@@ -120,7 +120,7 @@ def result_from_dict(data: Any, *, paths: bool = False) -> Result:
         beams=_numbers(data, "beams", (FRAMES, len(grid.beams), 3, 4, 3)),
         stress=None,
         seconds=float(data["seconds"]),
-        **_qualities(data, grid.material),
+        **_qualities(data, name_of(grid.material)),
     )
 
 

@@ -72,6 +72,23 @@ class DesignLimits(_Answer):
     actuator_length: float
 
 
+class ScatterFacts(_Answer):
+    """Relative standard deviations of the strain from print to print and from beam to beam."""
+
+    print: float
+    beam: float
+
+
+class LearnedFacts(_Answer):
+    """Whether the default model answers for a material, and what there is to say about that."""
+
+    knows: Annotated[
+        Literal["inside", "outside", "no"],
+        Field(description="outside: with a wider bound; no: finite elements do"),
+    ]
+    message: str
+
+
 class MaterialFacts(_Answer):
     """A material system."""
 
@@ -79,6 +96,10 @@ class MaterialFacts(_Answer):
     title: str
     section: SectionSize
     limits: DesignLimits
+    strain: Annotated[float, Field(description="released by an active half")]
+    curl: Annotated[float, Field(description="by so much more the top shrinks than the bottom")]
+    scatter: ScatterFacts
+    learned: LearnedFacts
 
 
 class Materials(_Answer):
