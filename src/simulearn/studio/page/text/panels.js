@@ -149,6 +149,7 @@ export const panels = {
     overlay: "Show both shapes",
     colourDeviation: "Colour by deviation",
     notComparable: "The two shapes cannot be compared.",
+    checkAlone: "The model has no shape of this design; the one shown is that of finite elements.",
     remarks: "Remarks by finite elements",
   },
   de: {
@@ -298,6 +299,7 @@ export const panels = {
     overlay: "Beide Formen zeigen",
     colourDeviation: "Nach Abweichung färben",
     notComparable: "Die beiden Formen lassen sich nicht vergleichen.",
+    checkAlone: "Das Modell hat keine Form zu diesem Entwurf; gezeigt ist die der finiten Elemente.",
     remarks: "Bemerkungen der finiten Elemente",
   },
 };
