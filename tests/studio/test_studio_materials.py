@@ -11,7 +11,6 @@ from simulearn import simulate
 from simulearn.grid import Grid, grid_to_dict, make
 from simulearn.interop import frames
 from simulearn.material import load_material, material_text, own_material
-
 from simulearn.studio.settings import Settings
 
 PLA = material_text("pla-hot-water")
@@ -23,7 +22,7 @@ def text_of(name="my-pla", **values):
     text = PLA.replace('name = "pla-hot-water"', f'name = "{name}"')
     for key, value in values.items():
         lines = text.splitlines()
-        (k,) = (k for k, line in enumerate(lines) if line.startswith(f"{key} ="))
+        k = next(k for k, line in enumerate(lines) if line.startswith(f"{key} ="))
         lines[k] = f"{key} = {value}"
         text = "\n".join(lines)
     return text
@@ -100,11 +99,11 @@ def test_finite_elements_and_validation(client):
     job = client.post("/api/fea", BODY).json()["job"]
     (result,) = finished(client, job)["result"]["results"]
     assert result["material"]["digest"] == own_material(MINE).digest
-    strict = text_of(beam_length=100.0)
+    long = text_of(actuator_length=80.0)
     plain = client.post("/api/validate", GRID | {"materials": [MINE]}).json()
     assert plain["errors"] == []
-    short = client.post("/api/validate", GRID | {"materials": [strict]}).json()
-    assert {error["code"] for error in short["errors"]} == {"beam-short"}
+    short = client.post("/api/validate", GRID | {"materials": [long]}).json()
+    assert {error["code"] for error in short["errors"]} == {"actuator-short"}
     (wrong,) = client.post("/api/validate", GRID | {"materials": ["x"]}).json()["errors"]
     assert wrong["code"] == "material-file"
 
