@@ -28,7 +28,11 @@ SORTINGS = (rectpack.SORT_NONE, rectpack.SORT_AREA, rectpack.SORT_SSIDE)
 
 
 def place(
-    grids: Sequence[Grid], section: Section, printer: Printer, brim: float = 0.0
+    grids: Sequence[Grid],
+    section: Section,
+    printer: Printer,
+    brim: float = 0.0,
+    margins: Sequence[float] = (),
 ) -> list[Grid]:
     """Return the grids moved to where they are printed, a quarter turn where that helps.
 
@@ -37,6 +41,7 @@ def place(
         section: of their beams.
         printer: whose bed they are to lie on.
         brim: width of a brim around each, mm, for which there is room if possible.
+        margins: of the bed that stay free if possible, mm, tried one after the other.
 
     Raises:
         InputError: a grid is larger than the bed, or there are too many, or whether the bed is
@@ -47,7 +52,7 @@ def place(
     sizes = np.array([high - low for low, high in boxes])
     free = shapely.buffer(printable(bed, EDGE), ROUNDING)
     found = []
-    for low, high in _rooms(bed):
+    for low, high in _rooms(bed, margins):
         if (packed := _packed(sizes, high - low)) is None:
             continue
         placed = _moved(grids, boxes, packed, (low + high) / 2)
@@ -71,14 +76,16 @@ def _shapes(grids: Sequence[Grid], section: Section) -> shapely.Geometry:
     return shapely.union_all([footprint(outline(grid, section)) for grid in grids])
 
 
-def _rooms(bed: Bed) -> Iterator[tuple[Array, Array]]:
+def _rooms(bed: Bed, margins: Sequence[float] = ()) -> Iterator[tuple[Array, Array]]:
     """Yield rectangles (low, high; mm) into which grids are packed, one after the other.
 
-    The first is the bed itself, where they lie amid it. Grids that would there leave a round bed or
-    meet an excluded zone are packed into what lies inside of it, or beside the zones.
+    The first is the bed itself within its margins, where they lie amid it. Grids that would there
+    leave a round bed or meet an excluded zone are packed into what lies inside of it, or beside the
+    zones.
     """
     low, high = np.array(bed.low), np.array(bed.high)
-    yield low + EDGE, high - EDGE
+    for margin in (*margins, 0.0):
+        yield low + EDGE + margin, high - EDGE - margin
     if bed.round:
         for degrees in (45.0, 35.0, 55.0, 25.0, 65.0):
             angle = np.radians(degrees)

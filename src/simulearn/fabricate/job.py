@@ -24,6 +24,8 @@ from simulearn.fabricate.toolpath import BRIM, SKIRT, Toolpath
 from simulearn.grid import Grid, Message, clean, outline, validate
 from simulearn.material import Material, load_material
 
+SKIRT_ROOM = 2.0  # mm beside the brim that a skirt takes at least
+
 
 @dataclass(frozen=True, eq=False)
 class Job:
@@ -124,13 +126,17 @@ class Job:
         )
 
 
-def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) -> Job:
+def prepare(
+    grids: Sequence[Grid], printer: Printer, names: Sequence[str] = (), dangling: bool = False
+) -> Job:
     """Return the print of one or more grids.
 
     Args:
         grids: designs of one material.
         printer: on what they are printed.
         names: what to call them in messages and in the file.
+        dangling: whether beams that dangle are printed too, as strips for a calibration are, else
+            they are taken off. Such grids are not validated, and keep off the bed's edge.
 
     Raises:
         InputError: a grid is not valid or larger than the bed, its material is unknown, or the
@@ -143,6 +149,9 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
     cleaned = []
     materials = [load_material(grid.material) for grid in grids]
     for grid, material, name in zip(grids, materials, names, strict=True):
+        if dangling:
+            cleaned.append(grid)
+            continue
         prefix = f"{name}: " if len(grids) > 1 else ""
         report = validate(grid, material)
         if not report.valid:
@@ -165,7 +174,8 @@ def prepare(grids: Sequence[Grid], printer: Printer, names: Sequence[str] = ()) 
             f"{printer.bed.height:g} mm"
         )
     section, bed = materials[0].section, printer.bed
-    placed = place(cleaned, section, printer, settings.brim)
+    margins = (settings.brim + SKIRT_ROOM, settings.brim) if dangling else ()
+    placed = place(cleaned, section, printer, settings.brim, margins)
     path, from_build = build(placed, section, settings, bed)
     part = shapely.union_all([footprint(outline(grid, section)) for grid in placed])
     moves = moves_of(path, part, settings, np.array(bed.low), bed.height)

@@ -6,7 +6,6 @@ tenths of a millimetre from the fine one, by a distance that changes slowly from
 step of the fine path begins near its end. What it ends in, is the same equilibrium as without.
 """
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -39,8 +38,8 @@ class Guide:
 
     Attributes:
         displacements: (N, 3) mm for pairs of released fraction and multiple of gravity.
-        record: bricks, iterations and corrections of the coarse trial, its seconds, and why it
-            ended early, if it did.
+        record: bricks, iterations and corrections of the coarse trial, and the code of why it ended
+            early, if it did.
     """
 
     displacements: Mapping[tuple[float, float], Array]
@@ -74,7 +73,6 @@ def guide_of(
     Raises:
         CancelledError: the token said so.
     """
-    begun = time.perf_counter()
     try:
         coarse = mesh(grid, material, COARSE, factors)
     except InputError as error:
@@ -107,7 +105,6 @@ def guide_of(
         "bricks": len(coarse.bricks),
         "iterations": problem.iterations,
         "corrections": problem.corrections,
-        "seconds": time.perf_counter() - begun,
         "ended": ended,
     }
     return Guide({(state.released, state.gravity): between @ state.u for state in states}, record)

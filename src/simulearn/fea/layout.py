@@ -43,6 +43,14 @@ class Layout:
         mine, theirs = ((one.core, one.slabs, one.layers) for one in (self, other))
         return mine != theirs and all(a >= b for a, b in zip(mine, theirs, strict=True))
 
+    @property
+    def name(self) -> str:
+        """Name of the layout, or its numbers."""
+        for name, layout in MESHES.items():
+            if layout == self:
+                return name
+        return f"core {self.core}, slabs {self.slabs}, layers {self.layers}"
+
     def across(self, section: Section) -> Array:
         """Return the breaks across a section, 0 to 1."""
         shell = section.shell / section.width
@@ -54,6 +62,7 @@ class Layout:
 COARSE = Layout()  # 210 bricks in a 2x2 grid
 FINE = Layout(core=1, slabs=16)  # 1,314: a tenth of a per cent from what finer ones converge to
 THREE_ACROSS = Layout(core=1)  # shell, core, shell: one growth per brick, as CalculiX needs it
+MESHES = {"default": COARSE, "fine": FINE}  # those that have a name
 
 
 class Breaks(NamedTuple):

@@ -150,6 +150,7 @@ def simulate_grid(
         "corrections": problem.corrections,
         "halved": path.halved,
         **({"guide": guide.record | {"steps": path.guided}} if guide else {}),
+        "mesh": layout.name,
         "stable": stable,
         "snaps": [
             {"released": snap.released, "frame": snap.frame, "motion_mm": motion}

@@ -12,7 +12,9 @@ from pydantic import (
     ConfigDict,
     Field,
     PrivateAttr,
+    SerializerFunctionWrapHandler,
     ValidationError,
+    model_serializer,
 )
 
 from simulearn.errors import InputError
@@ -40,6 +42,15 @@ def _plain_vertex(words: Any) -> Any:
 class _Part(BaseModel):
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
 
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out what is not asked of prints, so that files without it stay as they were."""
+        return {
+            key: value
+            for key, value in write(self).items()
+            if (key, value) not in (("tolerance", None), ("robust", False))
+        }
+
 
 class Goal(_Part):
     """A vertex, the point where it is wanted, and how much it counts.
@@ -48,11 +59,13 @@ class Goal(_Part):
         vertex: ["joint", k, "centre"], ["joint", k, corner] or ["beam", b, section, corner].
         target: [x, y, z] mm, seen from the fixed joint.
         weight: not negative.
+        tolerance: distance from the target that a print may have, mm; None: that of the task.
     """
 
     vertex: Annotated[list[Any], BeforeValidator(_plain_vertex)]
     target: Annotated[list[float], Field(min_length=3, max_length=3)]
     weight: Annotated[float, Field(ge=0)] = 1.0
+    tolerance: Positive | None = None
 
 
 class Pairs(_Part):
@@ -114,6 +127,8 @@ class Task(_Part):
         method: one of `simulearn.inverse.METHODS`.
         engine: one of `simulearn.simulate.ENGINES`.
         limits: when to stop.
+        tolerance: of the goals that have none of their own, mm; None: they have none.
+        robust: whether a design is searched for whose prints come close, all in all.
     """
 
     schema_: Literal["simulearn.task/1"] = Field(alias="schema", default="simulearn.task/1")
@@ -123,6 +138,8 @@ class Task(_Part):
     method: str = "default"
     engine: str = "learned"
     limits: Limits = Limits()
+    tolerance: Positive | None = None
+    robust: bool = False
     _material: Material | None = PrivateAttr(None)  # that the grid holds itself
 
     @property
@@ -145,6 +162,17 @@ class Task(_Part):
             np.array([goal.weight for goal in self.goals]),
         )
 
+    @property
+    def tolerances(self) -> tuple[float | None, ...]:
+        """The tolerance of each goal, mm."""
+        own = [goal.tolerance for goal in self.goals]
+        return tuple(self.tolerance if one is None else one for one in own)
+
+    @property
+    def of_prints(self) -> bool:
+        """Whether the task asks anything of prints, and not only of the design."""
+        return self.robust or any(one is not None for one in self.tolerances)
+
     def with_grid(self, grid: Grid) -> "Task":
         """Return the same task, beginning with another design."""
         task = self.model_copy(update={"grid": grid_to_dict(grid)})
@@ -155,10 +183,12 @@ class Task(_Part):
 KEYS = {
     "schema": f'this program reads "{SCHEMA}"',
     "grid": "a grid is written as in a grid file",
-    "goals": "goals are a list of at least one object with vertex, target and weight",
+    "goals": "goals are a list of at least one object with vertex, target, weight and tolerance",
     "vertex": '["joint", k, "centre"], ["joint", k, corner] or ["beam", b, section, corner]',
     "target": "a target is [x, y, z], finite numbers in mm",
     "weight": "a weight is a number of at least 0",
+    "tolerance": "a tolerance is a length in mm, more than 0",
+    "robust": "robust is true or false",
     "free": "free is an object with joints, actuators, move, ratio and pairs",
     "joints": "joints are a list of indices counted from 0 (or of two of them, in pairs)",
     "actuators": "actuators are a list of beams counted from 0 (or of two of them, in pairs)",

@@ -142,10 +142,14 @@ def _of_task(data: Any) -> dict[str, Any]:
             raise
         task = Task.model_validate(data)
     messages = []
-    if (task.free, task.limits, task.method) != (Free(), Limits(), "default"):
-        text = "what the task says about free parts, limits and method is not part of a document"
+    plain = (task.free, task.limits, task.method) == (Free(), Limits(), "default")
+    if not plain or task.of_prints:
+        text = (
+            "what the task says about free parts, limits, method, tolerances and robust is not "
+            "part of a document"
+        )
         messages.append(Message("opened-task", "file", text))
-    goals = [goal.model_dump() for goal in task.goals]
+    goals = [goal.model_dump(exclude={"tolerance"}) for goal in task.goals]
     grid = grid_to_dict(grid_from_dict(task.grid))
     return {"kind": "task", "grid": grid, "goals": goals, "messages": messages}
 

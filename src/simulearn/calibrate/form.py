@@ -1,0 +1,210 @@
+"""The form of a calibration: which strips were printed, and what was measured of them.
+
+A form is a TOML file that a person fills in with a ruler and a caliper, or that `calibrate photo`
+fills in. What is left blank is not used. A value may stand in quotes and with a decimal comma.
+
+How a strip is measured, out of the water and solid again (see docs/howto/calibrate.md):
+
+before: straight length before the bath, from end face to end face, mm.
+chord:  it lies on its side. A straight edge is laid across the two tips of its hollow side; the
+        chord is the distance between these tips, mm.
+rise:   the largest gap between straight edge and strip, mm; + where the strip is hollow on the side
+        that was up when it was printed (its ends bend up), - where it is hollow on the other one.
+"""
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from simulearn.errors import InputError
+from simulearn.files import read_text
+from simulearn.grid import Grid
+
+FORMAT: Literal["simulearn-calibration/1"] = "simulearn-calibration/1"
+MEASURED = ("before", "chord", "rise")  # what is measured of a strip, mm
+
+
+def _number(value: Any) -> Any:
+    """Return what a person wrote as a number; None where it is blank."""
+    if isinstance(value, bool):
+        raise ValueError("is a truth value; write a number of mm")
+    if not isinstance(value, str):
+        return value
+    text = value.strip().replace(",", ".")
+    if not text:
+        return None
+    if re.fullmatch(r"[+-]?\d*\.?\d+|[+-]?\d+\.", text):
+        return float(text)
+    raise ValueError(f'is "{value}"; write a number of mm without a unit')
+
+
+def _name(value: Any) -> Any:
+    return (value.strip() or None) if isinstance(value, str) else value
+
+
+_Length = Annotated[
+    Annotated[float, Field(gt=0, allow_inf_nan=False)] | None, BeforeValidator(_number)
+]
+_Height = Annotated[Annotated[float, Field(allow_inf_nan=False)] | None, BeforeValidator(_number)]
+_File = Annotated[str | None, BeforeValidator(_name)]
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class CaliperSection(_Data):
+    """Section of the printed beams by caliper, mm; None is the base material's."""
+
+    width: _Length = None
+    thickness: _Length = None
+
+
+class StripRecord(_Data):
+    """A kind of strip and what was measured of its R repeats.
+
+    Attributes:
+        beams: (B,) lengths of its beams from joint to joint, from the held end, mm.
+        actuators: (B,) their ratios, as in a grid.
+        before, chord, rise: (R,) mm, None where blank; see the head of this file.
+        photo: (R,) files of photographs, None where there is none.
+    """
+
+    beams: tuple[Annotated[float, Field(gt=0)], ...] = Field(min_length=1)
+    actuators: tuple[Annotated[float, Field(ge=-1, le=1)], ...]
+    before: tuple[_Length, ...]
+    chord: tuple[_Length, ...]
+    rise: tuple[_Height, ...]
+    photo: tuple[_File, ...] = ()
+
+    @model_validator(mode="after")
+    def _counts_agree(self) -> Self:
+        if len(self.beams) != len(self.actuators):
+            raise ValueError(f"has {len(self.beams)} beams and {len(self.actuators)} actuators")
+        for key in ("before", "rise", *(["photo"] if self.photo else [])):
+            if len(getattr(self, key)) != len(self.chord):
+                raise ValueError(
+                    f"{key} has {len(getattr(self, key))} values and chord {len(self.chord)}; "
+                    'each has one for every repeat, "" where it is not measured'
+                )
+        return self
+
+    @property
+    def repeats(self) -> int:
+        """R, how many strips of this kind there are."""
+        return len(self.chord)
+
+    def grid(self, material: str = "pla-hot-water", stretch: float = 1.0) -> Grid:
+        """Return the strip as a grid along +x whose first joint is held.
+
+        Args:
+            material: name of the material or path of its file.
+            stretch: factor on all lengths.
+        """
+        x = np.concatenate([[0.0], np.cumsum(self.beams)]) * stretch
+        beams = [[k, k + 1] for k in range(len(self.beams))]
+        return Grid(np.stack([x, 0 * x], axis=1), beams, self.actuators, 0, material)
+
+    def length(self, width: float) -> float:
+        """Return the printed length from end face to end face, mm; joints are as wide as beams."""
+        return sum(self.beams) + width
+
+
+class Form(_Data):
+    """A form.
+
+    Attributes:
+        format: of the file.
+        material: name or path of the base material, of which the plate was made.
+        printer: on what it was printed.
+        measured: when, and whatever else is worth a note; goes into the fitted material's comments.
+        section: by caliper.
+        strips: by their names.
+    """
+
+    format: Literal["simulearn-calibration/1"] = FORMAT
+    material: str = "pla-hot-water"
+    printer: str = ""
+    measured: str = ""
+    section: CaliperSection = CaliperSection()
+    strips: dict[str, StripRecord] = Field(min_length=1)
+
+    def with_reading(self, strip: str, repeat: int, **values: float | str | None) -> "Form":
+        """Return the form with some values of one strip written in.
+
+        Args:
+            strip: its name.
+            repeat: which of its repeats, from 0.
+            values: before, chord, rise (mm) or photo (a file's name).
+
+        Raises:
+            InputError: there is no such strip or repeat.
+        """
+        record = self.strips.get(strip)
+        if record is None:
+            known = ", ".join(self.strips)
+            raise InputError(f'strip "{strip}" is not in the form; it has {known}', where=strip)
+        if not 0 <= repeat < record.repeats:
+            raise InputError(
+                f"strip {strip} has {record.repeats} repeats; {repeat + 1} is none of them",
+                where=strip,
+            )
+        update = {}
+        for key, value in values.items():
+            row = list(getattr(record, key) or (None,) * record.repeats)
+            row[repeat] = value
+            update[key] = tuple(row)
+        new = record.model_copy(update=update)
+        return self.model_copy(update={"strips": self.strips | {strip: new}})
+
+
+def read_form(path: str | Path) -> Form:
+    """Return the form in a TOML file.
+
+    Raises:
+        InputError: it cannot be read or is no form; the message names the key and the strip.
+    """
+    return parse_form(read_text(path), str(path))
+
+
+def parse_form(text: str, path: str = "form") -> Form:
+    """Return the form of a text.
+
+    Args:
+        text: in TOML; a key with nothing after its "=" is blank.
+        path: what messages call it.
+
+    Raises:
+        InputError: it is no form; the message names the key and the strip.
+    """
+    text = re.sub(r"(?m)^(\s*[\w.-]+\s*=)[ \t]*(?=#|$)", r'\1 ""', text)
+    try:
+        return Form.model_validate(tomllib.loads(text))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(
+            f"{path}: is not valid TOML: {error}; values of repeats stand between [ and ] with "
+            "commas between them, decimals have a point",
+            "calibration-form",
+        ) from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = _place(first["loc"])
+        why = first["msg"].removeprefix("Value error, ")
+        others = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+        raise InputError(f"{path}: {where}: {why}{others}", "calibration-form", where) from error
+
+
+def _place(loc: tuple[int | str, ...]) -> str:
+    """Return the place of an error: "strip top, chord of repeat 2", or a key."""
+    if len(loc) < 2 or loc[0] != "strips":
+        return ".".join(str(part) for part in loc) or "form"
+    place = f"strip {loc[1]}"
+    if len(loc) > 2:
+        place += f", {loc[2]}"
+    if len(loc) > 3:
+        place += f" of repeat {int(loc[3]) + 1}" if loc[2] in MEASURED else f"[{loc[3]}]"
+    return place
