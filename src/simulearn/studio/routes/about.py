@@ -53,4 +53,3 @@ def _library() -> dict[str, Any]:
         for name, words in library().items()
     ]
     return {"designs": designs}
-

@@ -64,7 +64,9 @@ def _facts(texts: list[str]) -> dict[str, Any]:
 def facts_of(material: Material) -> dict[str, Any]:
     """Return what people want to know of a material before they use it, as plain data."""
     return {
-        **material.model_dump(mode="json", include={"name", "title", "section", "limits", "scatter"}),
+        **material.model_dump(
+            mode="json", include={"name", "title", "section", "limits", "scatter"}
+        ),
         "strain": material.shrinkage.active,
         "curl": material.shrinkage.curl,
         "learned": _learned(material),
