@@ -270,7 +270,7 @@ def is_name(text: str) -> bool:
 
 
 def name_of(material: str | Material) -> str:
-    """Return the name of what a grid is made of, which is a name or path, or the material itself."""
+    """Return the name of what a grid is made of: a name or path, or the material itself."""
     return material.name if isinstance(material, Material) else material
 
 

@@ -134,8 +134,9 @@ def _qualities(data: dict[str, Any], grid: Grid) -> dict[str, Any]:
     if bound is not None and not (isinstance(bound, int | float) and np.isfinite(bound)):
         raise InputError("bound_mm: is not a number", "result", "bound_mm")
     model = data.get("model")
+    named = {"name": name_of(grid.material), "digest": ""}
     return {
-        "material": _read(data, "material", Identity, {"name": name_of(grid.material), "digest": ""}),
+        "material": _read(data, "material", Identity, named),
         "model": None if model is None else _read(data, "model", Identity, None),
         "stable": data.get("stable", True),
         "bound_mm": None if bound is None else float(bound),

@@ -30,7 +30,7 @@ OwnMaterials = Annotated[
     list[Annotated[str, Field(max_length=MOST_TEXT)]],
     Field(
         max_length=MOST_MATERIALS,
-        description="TOML texts of materials that do not come along; grids name them by their names",
+        description="TOML texts of materials that do not come along; grids name them by name",
     ),
 ]
 GridBody = Annotated[GridFile, SkipValidation]
@@ -39,14 +39,14 @@ GridBody = Annotated[GridFile, SkipValidation]
 class _GridFile(GridFile):
     """A grid, and the materials that it may name besides those that come along."""
 
-    materials: OwnMaterials = []
+    materials: OwnMaterials = Field(default=[])
 
 
 class _TaskFile(Task):
     """A grid, goals, what may change, how to search, and materials that the grid may name."""
 
     grid: GridFile  # type: ignore[assignment]
-    materials: OwnMaterials = []
+    materials: OwnMaterials = Field(default=[])
 
 
 GridAlone = Annotated[_GridFile, SkipValidation]
