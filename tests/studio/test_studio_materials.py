@@ -122,6 +122,27 @@ def test_ranking_and_search(client):
     problem(client.post("/api/optimize", task | {"materials": {}}), 422, "material-file")
 
 
+def test_how_prints_differ(client):
+    scattering = MINE + "\n[scatter]\nprint = 0.05\nbeam = 0.03\n"
+    body = {"grids": [GRID], "materials": [scattering], "prints": 30}
+    (result,) = client.post("/api/simulate", body).json()["results"]
+    spread = result["scatter"]
+    assert (spread["prints"], spread["print"], len(spread["joints"])) == (30, 0.05, 4)
+    assert spread["overall_mm"] > 0.1
+    binary = client.post("/api/simulate", body, headers={"Accept": frames.MEDIA_TYPE})
+    (entry,) = frames.from_bytes(binary.content)
+    lines = entry["prints"]
+    assert lines.shape == (30, len(GRID["beams"]), 3, 3)
+    # Around the shape itself, and not all alike.
+    middles = np.array(entry["beams"])[-1].mean(axis=2)
+    assert np.abs(lines.mean(axis=0) - middles).max() < 1.0
+    assert lines.std(axis=0).max() > 0.1
+    problem(client.post("/api/simulate", BODY | {"prints": 4}), 422, "material-scatter")
+    two = body | {"grids": [GRID, GRID]}
+    problem(client.post("/api/simulate", two), 422, "too-many-grids")
+    problem(client.post("/api/simulate", body | {"prints": 1000}), 422, "request")
+
+
 def test_prints_and_files(client):
     printing = BODY | {"printer": "ender-3"}
     facts = client.post("/api/gcode", printing).json()

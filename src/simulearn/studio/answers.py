@@ -166,6 +166,31 @@ class SnapFacts(_Answer):
     frame: int
 
 
+class JointSpread(_Answer):
+    """How prints differ at a joint, mm; `simulearn.simulate.spread` says more."""
+
+    mean_mm: Point
+    up_mm: float
+    plane_mm: float
+    up_90_mm: Interval
+    plane_90_mm: float
+
+
+class SpreadAnswer(_Answer):
+    """How prints of the design differ in the last frame."""
+
+    print: float
+    beam: float
+    law: str
+    seed: int
+    engine: str
+    drawn: int
+    prints: int
+    overall_mm: float
+    overall_percent: float
+    joints: list[JointSpread]
+
+
 class ResultAnswer(_Answer):
     """The twelve frames of a morphing grid; mm, s, +z up."""
 
@@ -181,6 +206,9 @@ class ResultAnswer(_Answer):
     warnings: list[MessageBody]
     material: Identity
     model: Identity | None
+    scatter: Annotated[
+        SpreadAnswer | None, Field(description="only where prints were asked for")
+    ] = None
 
 
 class FailureAnswer(_Answer):

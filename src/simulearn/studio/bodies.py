@@ -24,6 +24,7 @@ from simulearn.material.own import MOST_MATERIALS, MOST_TEXT
 from simulearn.studio.problems import Problem
 from simulearn.studio.simulations import AT_ONCE
 
+MOST_PRINTS = 300  # as many as a model answers in a moment
 SHORT = 2**16  # bytes of JSON that take a millisecond or less; more are read beside the loop
 
 OwnMaterials = Annotated[
@@ -71,6 +72,14 @@ class SimulateBody(BaseModel):
     engine: Annotated[str, _one_of(*AT_ONCE)] = "learned"
     model: Annotated[str, _one_of("default", *shipped())] | None = None
     materials: OwnMaterials = []
+    prints: Annotated[
+        int,
+        Field(
+            ge=0,
+            le=MOST_PRINTS,
+            description="to be drawn from the material's scatter, of the one grid; 0: none",
+        ),
+    ] = 0
 
 
 class JsonRoute(APIRoute):

@@ -18,6 +18,7 @@ export const state = shallowReactive({
   problem: null, // why the last question had no answer: a Problem
   preview: null, // { result, grid, label }: a suggestion or step shown in place of the answer
   fea: null, // { document, result, seconds, progress, state }: of the check by finite elements
+  spread: null, // { document, state, result, problem }: how prints differ; see service/spread.js
   print: null, // { document, toolpath, facts, layer, travels }: of the tab "print"
   library: [], // [{ name, description, grid }]
   material: null, // { name, section: {width, thickness}, limits: {...}, ... } of the grid's; see service/materials.js

@@ -14,6 +14,8 @@ from simulearn.inverse import Suggestion, rank, task_from_dict
 from simulearn.material import Material, load_material, materials_of
 from simulearn.simulate import Failure, Outcome, outcome_to_dict
 from simulearn.simulate.engines import in_order
+from simulearn.simulate.scatter import prints_source, scattered
+from simulearn.simulate.simulator import Simulator
 from simulearn.studio.answers import RankAnswer, SimulateAnswer, ValidationAnswer
 from simulearn.studio.bodies import (
     GridAlone,
@@ -83,14 +85,40 @@ def _simulated(body: SimulateBody, settings: Settings, binary: bool, cancel: Can
     if sum(len(grids[k].beams) for k in left) > settings.beams_in_all:
         text = f"the grids have more than {settings.beams_in_all} beams in all; send fewer at once"
         raise InputError(text, "too-large", "grids")
+    if body.prints and len(grids) > 1:
+        raise InputError(
+            "prints are drawn of one grid at once; send one", "too-many-grids", "grids"
+        )
     if body.engine == "fea" and left:
         check_fea([grids[k] for k in left], settings)
     answers = engine.simulate([grids[k] for k in left], cancel=cancel)
+    if body.prints:
+        answers = [_spread(one, body.prints, engine, settings, cancel) for one in answers]
     outcomes.update(zip(left, answers, strict=True))
     in_place = in_order(iter(outcomes.items()), len(grids))
     if binary:
         return frames.to_bytes(grids, in_place)
     return json.dumps({"results": [outcome_to_dict(one) for one in in_place]}, allow_nan=False)
+
+
+def _spread(
+    outcome: Outcome, most: int, engine: Simulator, settings: Settings, cancel: Cancel
+) -> Outcome:
+    """Return a result together with how prints of its design differ; a failure as it is.
+
+    Raises:
+        InputError: the material has no scatter, or so many prints take too long.
+    """
+    if isinstance(outcome, Failure):
+        return outcome
+    beams = len(outcome.grid.beams)
+    if beams > settings.rank_beams:
+        text = f"the grid has {beams} beams; prints of at most {settings.rank_beams} are drawn here"
+        raise InputError(text, "too-large", "grid")
+    source = prints_source(load_material(outcome.grid.material), engine)
+    if source.engine != "learned":
+        check_fea([outcome.grid], settings)
+    return scattered(outcome, min(most, source.count), engine=engine, cancel=cancel)
 
 
 def _read(

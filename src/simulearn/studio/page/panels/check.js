@@ -9,6 +9,7 @@ import { t } from "../text/text.js";
 import { button } from "./controls.js";
 import { facts } from "./fields.js";
 import { note, problemNote, Reader, sentence } from "./notes.js";
+import { Spread } from "./spread.js";
 
 const FRAMES = 11; // that are computed: the flat one is given
 export const NOT_LEARNT = "material-not-learnt"; // code of the error that finite elements do not mind
@@ -138,6 +139,7 @@ export const Check = {
             ])),
           h(Read),
         ]),
+        h(Spread),
       ]);
     };
   },

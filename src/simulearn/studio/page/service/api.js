@@ -62,9 +62,9 @@ export const printers = () => json("/api/printers");
 const ownMaterials = (texts) => (texts?.length ? { materials: texts } : {});
 
 /** Return the results of grids, as `parseFrames` gives them; each has its `grid`, to be drawn by. */
-export async function simulate(grids, { engine = "learned", materials: texts, signal } = {}) {
+export async function simulate(grids, { engine = "learned", materials: texts, prints = 0, signal } = {}) {
   const response = await request("/api/simulate", {
-    method: "POST", body: { grids, engine, ...ownMaterials(texts) }, accept: MEDIA_TYPE, signal,
+    method: "POST", body: { grids, engine, ...ownMaterials(texts), ...(prints ? { prints } : {}) }, accept: MEDIA_TYPE, signal,
   });
   return parseFrames(await response.arrayBuffer()).map((result, k) => ({ ...result, grid: grids[k] }));
 }
