@@ -1,7 +1,7 @@
 """The task file: a grid, goals, what may change, and how to search; JSON, `simulearn.task/1`."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -11,6 +11,7 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
+    PrivateAttr,
     SerializerFunctionWrapHandler,
     ValidationError,
     model_serializer,
@@ -22,6 +23,7 @@ from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import shown, whole
 from simulearn.grid.cleaning import removals
 from simulearn.inverse.goals import Goals, Vertex
+from simulearn.material import Material
 
 SCHEMA = "simulearn.task/1"
 
@@ -138,16 +140,22 @@ class Task(_Part):
     limits: Limits = Limits()
     tolerance: Positive | None = None
     robust: bool = False
+    _material: Material | None = PrivateAttr(None)  # that the grid holds itself
 
     @property
     def start(self) -> Grid:
         """The design to begin with, its fixed joint at the origin."""
-        return grid_from_dict(self.grid, paths=True).centred
+        return self._design.centred
+
+    @property
+    def _design(self) -> Grid:
+        own = self._material
+        return grid_from_dict(self.grid, paths=True, materials=own and {own.name: own})
 
     @property
     def aims(self) -> Goals:
         """The goals as arrays."""
-        grid = grid_from_dict(self.grid, paths=True)
+        grid = self._design
         return Goals.of(
             [_vertex(goal.vertex, f"goals[{k}].vertex", grid) for k, goal in enumerate(self.goals)],
             np.array([goal.target for goal in self.goals]),
@@ -167,7 +175,9 @@ class Task(_Part):
 
     def with_grid(self, grid: Grid) -> "Task":
         """Return the same task, beginning with another design."""
-        return self.model_copy(update={"grid": grid_to_dict(grid)})
+        task = self.model_copy(update={"grid": grid_to_dict(grid)})
+        task._material = _own(grid)
+        return task
 
 
 KEYS = {
@@ -242,12 +252,15 @@ def task_to_dict(task: Task) -> dict[str, Any]:
     return task.model_dump(by_alias=True)
 
 
-def task_from_dict(data: Any, *, paths: bool = False) -> Task:
+def task_from_dict(
+    data: Any, *, paths: bool = False, materials: Mapping[str, Material] | None = None
+) -> Task:
     """Return the task that a dict with the file's keys describes.
 
     Args:
         data: such as JSON gives.
         paths: whether the grid's material may be the path of a file; if not, it must be a name.
+        materials: those that the grid's material may name besides the ones that come along.
 
     Raises:
         InputError: a key, type, index or number is wrong; one line says which.
@@ -260,7 +273,7 @@ def task_from_dict(data: Any, *, paths: bool = False) -> Task:
         first = error.errors(include_url=False)[0]
         raise InputError(_line(first), "task", _place(first["loc"])) from error
     try:
-        grid = grid_from_dict(task.grid, paths=paths)
+        grid = grid_from_dict(task.grid, paths=paths, materials=materials)
     except InputError as error:
         raise InputError(f"grid: {error}", error.code, error.where or "grid") from error
     for removed in removals(grid):
@@ -270,7 +283,13 @@ def task_from_dict(data: Any, *, paths: bool = False) -> Task:
             removed.where,
         )
     _check(task, grid)
+    task._material = _own(grid)
     return task
+
+
+def _own(grid: Grid) -> Material | None:
+    """Return the material that a grid holds itself, None where it names one."""
+    return grid.material if isinstance(grid.material, Material) else None
 
 
 def _check(task: Task, grid: Grid) -> None:

@@ -153,6 +153,12 @@ class Learned:
         if wrong := self._not_learnt(material):
             raise wrong
 
+    def remark(self, material: Material) -> Message | None:
+        """Return why a material has no answer, or that it is outside what was learnt; else None."""
+        if wrong := self._not_learnt(material):
+            return Message(wrong.code, wrong.where, str(wrong))
+        return next(self._beyond_family(material), None)
+
     def _not_learnt(self, material: Material) -> InputError | None:
         learnt = self.material
         if material.physics == learnt.physics:  # whatever it is called

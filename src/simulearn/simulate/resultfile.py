@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
-from simulearn.material import Identity
+from simulearn.material import Identity, name_of
 from simulearn.schedule import Snap
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
 from simulearn.simulate.spread import spread_from_dict, spread_to_dict
@@ -134,8 +134,9 @@ def _qualities(data: dict[str, Any], grid: Grid) -> dict[str, Any]:
     if bound is not None and not (isinstance(bound, int | float) and np.isfinite(bound)):
         raise InputError("bound_mm: is not a number", "result", "bound_mm")
     model = data.get("model")
+    named = {"name": name_of(grid.material), "digest": ""}
     return {
-        "material": _read(data, "material", Identity, {"name": grid.material, "digest": ""}),
+        "material": _read(data, "material", Identity, named),
         "model": None if model is None else _read(data, "model", Identity, None),
         "stable": data.get("stable", True),
         "bound_mm": None if bound is None else float(bound),

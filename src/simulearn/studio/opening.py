@@ -44,8 +44,8 @@ def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, 
 
     Returns:
         kind (grid, task, result, document or drawing), name, grid, goals, printer (None if the file
-        names none), messages about what was not taken over, and what is to be told of a drawing:
-        format, unit, layers and mends (None for other files).
+        names none), texts of own materials, messages about what was not taken over, and what is to
+        be told of a drawing: format, unit, layers and mends (None for other files).
 
     Raises:
         InputError: the file holds nothing that can be opened; the message says what and where.
@@ -70,6 +70,7 @@ def _parts(data: bytes, name: str, options: Options | None) -> dict[str, Any]:
         "name": "",
         "goals": [],
         "printer": None,
+        "materials": [],
         "messages": [],
         "drawing": None,
     }
@@ -170,7 +171,7 @@ def _of_drawing(found: Imported) -> dict[str, Any]:
 
 def _of_document(data: Any) -> dict[str, Any]:
     check_document(data)
-    optional = {key: data[key] for key in ("name", "printer") if data.get(key)}
+    optional = {key: data[key] for key in ("name", "printer", "materials") if data.get(key)}
     return {
         "kind": "document",
         "grid": data["grid"],

@@ -34,7 +34,7 @@ class Designs:
         flat: (T, J, 2) mm, joints of the flat grids, the fixed joint at the origin.
         actuators: (T, B) signed ratios.
         material: the material system.
-        reference: name or path of it, as grids have it.
+        reference: name or path of it, or the material itself, as grids have it.
         materials: (T,) of each design, where they differ.
         factors: (T, B) by which the released strains of beams differ from the material's, or None.
         mesh: 0 for answers as of the default mesh, 1 for those of the fine one; None for the finest
@@ -46,7 +46,7 @@ class Designs:
     flat: NDArray[np.float64]
     actuators: NDArray[np.float64]
     material: Material = field(default_factory=standard)
-    reference: str = "pla-hot-water"
+    reference: str | Material = "pla-hot-water"
     materials: tuple[Material, ...] = ()
     factors: NDArray[np.float64] | None = None
     mesh: float | None = None
