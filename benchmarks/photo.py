@@ -83,10 +83,11 @@ def main() -> None:
     count = arguments.scenes
     few = max(2, count // 10)
     report = Report("photo", "Strips measured in photos")
-    plain = [
-        sized(random_scene(300 + k, sheet=False, note=False), tilt=k % few, distance=380)
-        for k in range(few)
-    ]
+    plain = []
+    for k in range(few):  # the strip over the ruler, and not on it
+        scene = random_scene(300 + k, sheet=False, note=False)
+        strip = replace(scene.strips[0], place=(90.0, 115.0))
+        plain.append(sized(replace(scene, strips=(strip,)), tilt=k % few, distance=380))
     groups = [
         ("white sheet", [sized(random_scene(k)) for k in range(count)], True),
         ("the same, lens not known", [sized(random_scene(k)) for k in range(few)], False),

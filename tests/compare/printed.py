@@ -32,14 +32,14 @@ def numbers(material):
     }
 
 
-def bend(material=BASE, chiral=0.5):
+def bend(material=BASE):
     """Return the motion of points (N, 3) of the flat grid; no symmetry brings it onto itself."""
     d = numbers(material)
     k = 1.0 + d["strain"] + 0.5 * d["creep"]
-    xx = 3.0e-3 * k - 2.0e-3 * d["passive"] + 6e-3 * d["curl"]
-    yy = -2.2e-3 * k + 4.0e-3 * d["shell"] + 6e-3 * d["curl"]
-    xy = chiral * 2.5e-3 * k + 2e-3 * d["weight"]
-    xxx = 1.6e-5 * k + 1e-5 * d["joint"]
+    xx = 4.0e-3 * k - 4.0e-3 * d["passive"] + 8e-3 * d["curl"]
+    yy = -3.0e-3 * k + 6.0e-3 * d["shell"] + 8e-3 * d["curl"] + 4e-4 * d["creep"]
+    xy = 3.0e-3 * k + 3e-3 * d["weight"]
+    xxx = 1.0e-4 * k + 5e-5 * d["joint"]
 
     def move(p, s):
         x, y, z = p.T
@@ -97,7 +97,7 @@ def moved(points, seed):
     return points @ turn.T + place
 
 
-def surface(result, count=25_000, noise=0.15, hole=None, seed=0):
+def surface(result, count=15_000, noise=0.15, hole=None, seed=0):
     """Return points of the last frame's surface and their normals, as a scanner sees them.
 
     Args:

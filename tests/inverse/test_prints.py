@@ -75,7 +75,7 @@ def by_the_toy(monkeypatch):
     answer(monkeypatch, prints)
     monkeypatch.setattr(search, "warm", lambda engine: None)
     monkeypatch.setattr(search, "engine_of", lambda name, model=None: Toy(name))
-    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Toy(name))
+    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: Toy(name))
     monkeypatch.setattr("simulearn.inverse.ranking.engine_of", lambda name, model=None: Toy(name))
 
 

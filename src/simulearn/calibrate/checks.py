@@ -22,6 +22,8 @@ SLACK = 2.0  # mm
 SURE = 2.0  # mm, a rise of less may have either sign
 OUTLIER = 5.0  # standard deviations of a reading from the median of its repeats
 LEAST_SD = 0.3  # mm
+# Of three normal numbers the middle distance from their median is 0.4 standard deviations (median).
+OF_MIDDLE = 2.5
 SCATTER = 0.1  # of a rise, by which strips may differ
 
 
@@ -140,10 +142,9 @@ def without_outliers(form: Form) -> tuple[Form, list[Message]]:
     if not rows:
         return form, []
     away = {place: row - np.nanmedian(row) for place, row in rows.items()}
-    every = np.abs(np.concatenate(list(away.values())))
-    every = every[np.isfinite(every)]
-    # The median itself is one of the repeats, so that of three deviations one is 0.
-    sd = max(LEAST_SD, 1.4826 * float(np.median(every[every > 0])) if every.any() else 0.0)
+    # Not moved by the outlier itself, even if it is the only row.
+    middles = [float(np.nanmedian(np.abs(row))) for row in away.values()]
+    sd = max(LEAST_SD, OF_MIDDLE * float(np.median(middles)))
     messages = []
     for (name, key), row in away.items():
         rise = form.strips[name].rise

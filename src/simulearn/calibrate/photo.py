@@ -37,7 +37,9 @@ UPS: tuple[str, ...] = get_args(Up)
 IN_PICTURE = {"left": (-1, 0), "right": (1, 0), "top": (0, -1), "bottom": (0, 1)}
 UNSURE = 0.35  # between the direction that is up and that of the hollow side, cosine
 THICK = 0.12  # relative difference from the section's thickness that is told
-ROUGH = 0.25  # mm, residual of what is no strip
+ROUGH = 0.1  # mm, residual of what is no strip: strips have .02 to .05, shadows .15
+USED = 0.7  # of the outline that a strip has near its curve, but for its corners
+LIKE_SHADOW = 0.4  # of the sheet's light, from where on a grey strip may be a shadow
 WAVY = 0.25  # of the rise, on the other side of the chord
 
 
@@ -165,18 +167,22 @@ def _measured(
         reference = scale_reference(photo, scale, scale_height)
     outline = find_outline(photo, reference, section.thickness, section.width)
     fit = fit_curve(outline.points, outline.middle, section.thickness)
-    if fit.residual > ROUGH or fit.used.mean() < 0.5:
+    if fit.residual > ROUGH or fit.used.mean() < USED:
         raise InputError(
             "what was found is not as evenly thick as a strip is, or a shadow hides its edge; use "
-            "light from all around, and lay nothing on the strip",
+            "light from all around, and the dark sheet for a white strip",
             "photo-no-strip",
         )
     curve = fit.curve
     sign = _sign(curve, reference, up)
     result = measures(curve, reference, section.width, outline.blur)
-    remarks = _remarks(curve, result.rise, section, reference)
-    messages = (*reference.messages, *remarks)
-    return StripPhoto(photo, section, result, sign, fit, outline, reference, messages)
+    messages = [*reference.messages, *_remarks(curve, result.rise, section, reference)]
+    if outline.band.kind == "darker" and outline.lightness > LIKE_SHADOW:
+        text = (
+            "the strip is hardly darker than a shadow is; see in the picture that it is the strip"
+        )
+        messages.append(Message("photo-grey", "photo", text))
+    return StripPhoto(photo, section, result, sign, fit, outline, reference, tuple(messages))
 
 
 def _sign(curve: Curve, reference: Reference, up: Up | None) -> float | None:

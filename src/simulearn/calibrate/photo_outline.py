@@ -42,6 +42,7 @@ class Outline:
         top: (N,) whether the upper edge was seen.
         middle: (M, 2) roughly along the middle of the strip, mm.
         blur: deviation of the blur of its edges, mm.
+        lightness: light of the strip over that of the empty sheet.
         band: what was found of it, in pixels of a picture of its own.
     """
 
@@ -50,6 +51,7 @@ class Outline:
     top: NDArray[np.bool_]
     middle: Array
     blur: float
+    lightness: float
     band: Band
 
 
@@ -110,7 +112,8 @@ def find_outline(photo: Photo, reference: Reference, thickness: float, width: fl
     middle = camera.on_plane(
         camera.pixels(_raised(_to_sheet(band.middle, reference.region))), width / 2
     )
-    return Outline(points, pixels, top, middle, blur, band)
+    lightness = float(np.median(relative[band.mask]))
+    return Outline(points, pixels, top, middle, blur, lightness, band)
 
 
 def _raised(points: Array) -> Array:

@@ -30,7 +30,7 @@ MARGIN = 1.5  # mm from the frame, within which nothing is looked for
 NOT_MEASURED, MEASURED = 0.0025, 0.0005  # relative deviation of a printed sheet's size
 HELD = 6.0  # degrees, deviation of a camera that is meant to look straight down
 POINT = 1.5  # pixels, deviation of a point that a person read off
-NEARBY = 0.8  # of the length of a scale, within which the strip is looked for around it
+NEARBY = 1.2  # of the length of a scale, within which the strip is looked for around it
 FAR_OFF = 1.0  # pixels, residual of the markers of a sheet that is not flat
 STEEP = 30.0  # degrees
 

@@ -77,8 +77,9 @@ def relative_light(light: Light, pixels_in_mm: float, dark: bool) -> Light:
     grid_y, grid_x = np.linspace(-1, 1, 40), np.linspace(-1, 1, 40)
     fine_x, fine_y = (one.ravel() for one in np.meshgrid(grid_x, grid_y))
     sheet = np.empty((height, width, 3), np.float32)
-    kept = np.ones(rows * columns, bool)
     grey = level.mean(axis=2).ravel()
+    # What is far from the sheet's light from the first, as a table beside it, pulls no fit.
+    kept = grey < 2 * np.percentile(grey, 25) if dark else grey > 0.5 * np.percentile(grey, 75)
     for _ in range(6):  # blocks with a strip, a shadow or writing in them are left out
         fitted = terms @ np.linalg.lstsq(terms[kept], grey[kept], rcond=None)[0]
         off = (grey - fitted) / np.maximum(fitted, 1e-4)
@@ -140,14 +141,15 @@ def find_strip(
     even = [band for band in bands if band.uneven < UNEVEN]
     if not even:
         raise _nothing(bands, dark)
-    best = min(even, key=lambda band: _badness(band, width))
-    if best.edge:
+    inner = [band for band in even if not band.edge]
+    if not inner:
         raise InputError(
             "the strip reaches the edge of where it is looked for; lay it in the middle of the "
             "frame, and photograph all of it",
             "photo-edge",
         )
-    _alone(best, even)
+    best = min(inner, key=lambda band: _badness(band, width))
+    _alone(best, inner)
     return best
 
 

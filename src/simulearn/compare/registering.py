@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 from scipy.spatial import KDTree
 
-from simulearn.compare.aligning import LEAST, MIRROR, MIRRORED, Pose, rigid
+from simulearn.compare.aligning import MIRROR, Pose, rigid
 from simulearn.compare.matching import EQUAL, FLOOR
 from simulearn.compare.measurement import Numbers
 from simulearn.errors import Cancel, stop_if
@@ -21,8 +21,8 @@ from simulearn.errors import Cancel, stop_if
 LIMIT = 12.0  # mm, a distance that counts in full
 TURNS = 24  # about each axis
 SAME = 6.0  # mm, by which poses differ that are not one
-# Points, steps, and how many poses go on; the shifted ones begin at the second.
-ROUNDS = ((120, 6, 24), (250, 10, 6), (800, 15, 4), (3000, 12, 4))
+# Points, steps, how many poses go on, and mm between points; the shifted ones begin at the second.
+ROUNDS = ((100, 6, 24, 5.0), (200, 10, 6, 5.0), (800, 15, 4, 2.0), (3000, 12, 4, 2.0))
 SHIFTED = 2  # poses that are tried shifted, too
 
 
@@ -40,7 +40,7 @@ class Fit:
 
 
 def registered(
-    scan: Numbers, surface: Numbers, beam: float, cancel: Cancel | None = None
+    scan: Numbers, surface: Numbers, beam: float, mirror: bool, cancel: Cancel | None = None
 ) -> list[Fit]:
     """Return the pose of a scan, and those that fit as well: distinct ones, the best first.
 
@@ -48,17 +48,17 @@ def registered(
         scan: (N, 3) mm.
         surface: (M, 3) points of the simulated surface, mm.
         beam: usual distance of neighbouring joints, mm.
+        mirror: whether the scan is reflected.
         cancel: stops the search.
 
     Raises:
         CancelledError: the token was set.
     """
-    fits = _fits(thinned(scan), surface, beam, cancel)
-    if fits[0].score > LEAST:
-        mirrored = _fits(thinned(scan) @ MIRROR, surface, beam, cancel)
-        if mirrored[0].score * MIRRORED < fits[0].score:
-            first = Pose(MIRROR, np.zeros(3))
-            fits = [Fit(fit.pose.after(first), fit.score) for fit in mirrored]
+    scan = thinned(scan @ MIRROR if mirror else scan)
+    fits = _fits(scan, surface, beam, cancel)
+    if mirror:
+        first = Pose(MIRROR, np.zeros(3))
+        fits = [Fit(fit.pose.after(first), fit.score) for fit in fits]
     return [fit for fit in fits if fit.score <= EQUAL * fits[0].score + FLOOR]
 
 
@@ -77,18 +77,17 @@ def thinned(points: Numbers, cell: float = 2.0) -> Numbers:
 
 def _fits(scan: Numbers, surface: Numbers, beam: float, cancel: Cancel | None) -> list[Fit]:
     """Return distinct poses of a scan that is not mirrored, the best first."""
-    rng = np.random.default_rng(0)
-    search = _Search(scan, thinned(surface), rng)
+    searches = {cell: _Search(thinned(scan, cell), thinned(surface, cell)) for *_, cell in ROUNDS}
     fits = [Fit(pose, LIMIT) for pose in _starts(scan, surface)]
-    for k, (count, steps, stay) in enumerate(ROUNDS):
+    for k, (count, steps, stay, cell) in enumerate(ROUNDS):
         tried = []
         for fit in fits:
             stop_if(cancel)
-            tried.append(search.improved(fit.pose, count, steps))
+            tried.append(searches[cell].improved(fit.pose, count, steps))
         fits = distinct(tried, scan)
         if k == 1:
-            moved = [Fit(pose, LIMIT) for pose in _shifted(fits[:SHIFTED], surface, beam)]
-            fits += [search.improved(fit.pose, count, steps) for fit in moved]
+            shifted = _shifted(fits[:SHIFTED], surface, beam)
+            fits += [searches[cell].improved(pose, count, steps) for pose in shifted]
             fits = distinct(fits, scan)
         fits = fits[:stay]
     return fits
@@ -137,7 +136,8 @@ def _score(fit: Fit) -> float:
 class _Search:
     """Improves poses of a scan."""
 
-    def __init__(self, scan: Numbers, surface: Numbers, rng: np.random.Generator) -> None:
+    def __init__(self, scan: Numbers, surface: Numbers) -> None:
+        rng = np.random.default_rng(0)
         self._scan, self._surface = rng.permutation(scan), rng.permutation(surface)
         self._of_scan, self._of_surface = KDTree(self._scan), KDTree(self._surface)
 
@@ -147,17 +147,18 @@ class _Search:
         limit = 3 * LIMIT
         for _ in range(steps):
             moved = pose(scan)
-            away, near = self._of_surface.query(moved)
+            away, near = self._of_surface.query(moved, distance_upper_bound=limit)
             back = (surface - pose.shift) @ pose.turn
-            away2, near2 = self._of_scan.query(back)
-            ours = np.concatenate([moved, pose(self._scan[near2])])
-            theirs = np.concatenate([self._surface[near], surface])
-            keep = np.concatenate([away, away2]) < limit
-            if keep.sum() < 6:
+            away2, near2 = self._of_scan.query(back, distance_upper_bound=limit)
+            ours, theirs = np.isfinite(away), np.isfinite(away2)  # else none is so near
+            if ours.sum() + theirs.sum() < 6:
                 break
-            pose = rigid(ours[keep], theirs[keep]).after(pose)
+            here = np.concatenate([moved[ours], pose(self._scan[near2[theirs]])])
+            there = np.concatenate([self._surface[near[ours]], surface[theirs]])
+            pose = rigid(here, there).after(pose)
             limit = max(0.8 * limit, LIMIT / 2)
-        away, _ = self._of_surface.query(pose(scan))
-        away2, _ = self._of_scan.query((surface - pose.shift) @ pose.turn)
+        away, _ = self._of_surface.query(pose(scan), distance_upper_bound=LIMIT)
+        back = (surface - pose.shift) @ pose.turn
+        away2, _ = self._of_scan.query(back, distance_upper_bound=LIMIT)
         score = np.minimum(away, LIMIT).mean() + np.minimum(away2, LIMIT).mean()
         return Fit(pose, float(score) / 2)

@@ -17,6 +17,7 @@ COLUMNS = ("joint", "x", "y", "z", "simulated_x", "simulated_y", "simulated_z", 
 LISTED = 3  # changes of the material
 LITTLE = 0.3  # a change that explains less explains nothing
 EQUALLY = 0.05  # less than the best explains as well
+NEGLIGIBLE = 0.01  # mm, which nobody measures
 CHANCE = 0.05  # that noise alone would seem to be explained
 
 
@@ -107,7 +108,7 @@ def verdict(comparison: Comparison) -> str:
     bound = comparison.result.bound_mm or 0.0
     noise = (comparison.noise or 0.0) / 2
     mean, found = comparison.deviation.mean, comparison.explanations
-    if mean <= max(bound, noise, 1e-6):
+    if mean <= max(bound, noise, NEGLIGIBLE):
         return (
             f"a mean of {mean:.2f} mm is within what the simulation and the measurement are off "
             "by themselves; there is nothing to explain"

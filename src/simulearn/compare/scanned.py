@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import KDTree
 
-from simulearn.compare.aligning import Pose, ambiguous, mirrored, rigid, rms
+from simulearn.compare.aligning import MIRRORED, Pose, ambiguous, mirrored, rigid, rms
 from simulearn.compare.clutter import without_strays, without_table
 from simulearn.compare.fitting import Found, fitted
 from simulearn.compare.measurement import Numbers, Scan
@@ -18,6 +18,7 @@ FEWEST_POINTS = 1500  # of a scan
 FEWEST_JOINTS = 4
 SHARE = 0.4  # of the joints that must be found
 TRIED = 4  # poses whose joints are fitted
+DOUBTFUL = 0.02  # of the dimension, residual from which a scan may be mirrored
 EQUAL, FLOOR = 1.1, 0.1  # times and mm: residuals that are as good
 SHOWN = 20_000  # points kept for pictures
 
@@ -77,12 +78,18 @@ def place_scan(
     surface, stations = surface_of(result), stations_of(result)
     ends = result.grid.joints[result.grid.beams]
     beam = float(np.median(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
-    fits = registered(scan.points, surface.points, beam, cancel)
     many = len(result.grid.joints)
-    laid = [
-        _laid(scan, fit.pose, surface, stations, many, cancel) for fit in fits[:TRIED]
-    ]  # fmt: skip
-    laid = sorted((one for one in laid if one is not None), key=_quality)
+
+    def best_poses(mirror: bool) -> list[_Laid]:
+        fits = registered(scan.points, surface.points, beam, mirror, cancel)[:TRIED]
+        every = [_laid(scan, fit.pose, surface, stations, many, cancel) for fit in fits]
+        return sorted((one for one in every if one is not None), key=_quality)
+
+    laid = best_poses(mirror=False)
+    if not laid or laid[0].residual > DOUBTFUL * result.grid.dimension:
+        other = best_poses(mirror=True)
+        if other and (not laid or other[0].residual * MIRRORED < laid[0].residual):
+            laid = other
     if not laid:
         text = (
             "the scan does not fit the grid: hardly any of its joints are found near to where they "

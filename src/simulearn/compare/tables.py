@@ -19,6 +19,7 @@ from simulearn.errors import InputError, Message
 
 NAMES = ("joint", "joints", "number", "no", "nr", "id", "index", "point", "name", "label")
 AXES = ("x", "y", "z")
+UNIT = r"(?:[\[(]\s*|^[xyz][ _-]+)([^\[\]()]+?)\s*[\])]?$"  # as in "x [mm]", "x (mm)", "x_mm"
 MANY = 20_000  # rows beyond which a table is read at once, without a message for each cell
 CODE = "measurement-table"
 
@@ -103,7 +104,7 @@ def _named(header: Sequence[str]) -> Columns:
     for k, cell in enumerate(header):
         name = re.sub(r"[\[(].*?[\])]", "", cell).strip().casefold()
         name = re.sub(r"[ _-]?(mm|cm|m|in)$", "", name) if name[:1] in AXES else name
-        if unit := re.search(r"(?:[\[(]|[xyz][ _-])\s*([^\])]+?)\s*[\])]?$", cell.casefold()):
+        if unit := re.search(UNIT, cell.casefold()):
             units[name] = unit[1]
         at.setdefault(name, k)
     missing = [axis for axis in AXES if axis not in at]

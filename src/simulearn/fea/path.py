@@ -25,7 +25,9 @@ Array = NDArray[np.float64]
 SHORT = 0.25  # of an increment, its first part where there is no past to extrapolate
 SNAP_STEP = 0.01  # of the release: to this a snap is located
 FAR = 0.03  # of the solid's size: an equilibrium so far from its extrapolation is another branch
-ASTRAY = 0.01  # of the size: an equilibrium so far from where a guide leads is not what it leads to;
+ASTRAY = (
+    0.01  # of the size: an equilibrium so far from where a guide leads is not what it leads to;
+)
 # under gravity alone, where heavy slender grids of two meshes hang 2 % apart, it is `FAR`
 GUIDED_ITERATIONS = 6  # at most, before a step is done without its guide
 

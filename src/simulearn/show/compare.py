@@ -28,7 +28,7 @@ MEASURED = BOTTOM
 DOTS = 6000  # points of a scan that are drawn
 SPACING = 2.0  # mm, length of the quadrilaterals along a beam
 ABOVE = Camera(azimuth=-90.0, elevation=90.0)
-WRAPPED = 118  # letters in a line of words, at a width of 7.2 inches
+WRAPPED = 136  # letters in a line of words, at a width of 7.2 inches
 
 
 def compared(comparison: Comparison, camera: Camera = Camera(), width: float = 7.2) -> Figure:
