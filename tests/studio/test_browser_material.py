@@ -30,25 +30,24 @@ def words(page):
     return do.status(page).locator(".status-main").inner_text()
 
 
-def width(page):
-    """Return how wide the first beam is drawn in the plan, px."""
-    return do.beam(page, 0).evaluate("(beam) => beam.getBBox ? beam.getBBox().height : 0")
-
-
 def test_a_material_of_ones_own_is_used_kept_and_shared(page, studio, visit):
     do.opened(page, studio.url)
     chosen = page.get_by_label("Material", exact=True)
     expect(chosen).to_have_value("pla-hot-water")
-    expect(page.get_by_text("7.2 × 4.0 mm, strain 9.3 %.")).to_be_visible()
+    expect(page.get_by_text("7.2 × 4.0 mm, strain 9.3 %, scatter 17.0 %")).to_be_visible()
     before = words(page)
     mine = own(width="9.0", curl="0.01")
     open_material(page, mine)
     expect(chosen.locator("option:checked")).to_have_text("My PLA (own)")
-    expect(page.get_by_text("9.0 × 4.0 mm, strain 9.3 %, own curl +1.0 %.")).to_be_visible()
+    expect(page.get_by_text("9.0 × 4.0 mm, strain 9.3 %, own curl +1.0 %, scatter")).to_be_visible()
     expect(page.get_by_text("The learned model knows it.")).to_be_visible()
     expect(do.status(page).locator(".status-main")).not_to_have_text(before)
     do.simulated(page)
     after = words(page)
+    checks = do.tab(page, "Check")
+    do.button(checks, "Show how prints differ").click()
+    expect(checks.get_by_text("Prints differ by")).to_be_visible()
+    do.tab(page, "Design")
     with page.expect_download() as waiting:
         do.button(page, "Save material").click()
     assert waiting.value.suggested_filename == "my-pla.toml"

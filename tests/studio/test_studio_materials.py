@@ -123,7 +123,7 @@ def test_ranking_and_search(client):
 
 
 def test_how_prints_differ(client):
-    scattering = MINE + "\n[scatter]\nprint = 0.05\nbeam = 0.03\n"
+    scattering = text_of(print=0.05, beam=0.03)
     body = {"grids": [GRID], "materials": [scattering], "prints": 30}
     (result,) = client.post("/api/simulate", body).json()["results"]
     spread = result["scatter"]
@@ -137,7 +137,8 @@ def test_how_prints_differ(client):
     middles = np.array(entry["beams"])[-1].mean(axis=2)
     assert np.abs(lines.mean(axis=0) - middles).max() < 1.0
     assert lines.std(axis=0).max() > 0.1
-    problem(client.post("/api/simulate", BODY | {"prints": 4}), 422, "material-scatter")
+    alike = body | {"materials": [text_of(print=0.0, beam=0.0)]}
+    problem(client.post("/api/simulate", alike), 422, "material-scatter")
     two = body | {"grids": [GRID, GRID]}
     problem(client.post("/api/simulate", two), 422, "too-many-grids")
     problem(client.post("/api/simulate", body | {"prints": 1000}), 422, "request")
