@@ -24,19 +24,19 @@ from simulearn.learn.equilibrium.parameters import (
     TWIST_MIRROR,
     TWIST_SIZE,
     NetworkWeights,
-    Parameters,
     joined,
     signed,
 )
 from simulearn.learn.equilibrium.prediction import plain
 from simulearn.learn.equilibrium.reference import TrialPoses, trial_poses
-from simulearn.learn.equilibrium.stages import Keeper, descend
+from simulearn.learn.equilibrium.stages import Keeper, StageExamples, descend
 from simulearn.material import load_material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.forces import BeamState
+from simulearn.mechanics.model import section_of, unfitted
 from simulearn.mechanics.poses import Array, Pose, exp_so3
+from simulearn.mechanics.properties import properties_of
 from simulearn.mechanics.rollout import RELEASED, loads, start
-from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.topology import FlatGeometry, Topology, flat_geometry, topologies
 
 USUAL = np.array([20, 20, 20, 0.5, 0.5, 0.5])  # mm, rad: how far things move and turn
@@ -46,7 +46,9 @@ POSES = joined(
 )
 FAR = 50.0  # mm, what is usual
 MATERIAL = load_material("pla-hot-water")
-LOAD = loads(MATERIAL)
+PROPERTIES = properties_of(MATERIAL, 0.0)
+SECTION = section_of(unfitted(), PROPERTIES)
+LOAD = loads(PROPERTIES)
 
 
 def poses(
@@ -61,7 +63,9 @@ def poses(
     away = geometry.centre[topology.ends] - geometry.centre[topology.fixed]
     away = jnp.einsum("hbji,hbj->hbi", geometry.frame, away) / FAR
     place = jnp.concatenate([away, jnp.zeros_like(away)], -1) * TWIST_SIZE
-    features = corrector.features_of(topology, geometry, ratio, start(geometry), place, s, gravity)
+    features = corrector.features_of(
+        topology, geometry, ratio, start(geometry), place, s, gravity, PROPERTIES
+    )
     predicted = corrector.outputs(weights, topology, features, POSES)
     predicted = jnp.einsum(
         "hbij,hbkj->hbki", geometry.frame, predicted.reshape(*predicted.shape[:-1], 4, 3)
@@ -82,14 +86,14 @@ def _placed(at: Pose, own: Array) -> Array:
 
 def _own(topology: Topology, geometry: FlatGeometry, s: Array) -> tuple[Array, Array]:
     warps = plain(topology.ends.shape[1])
-    return local_corners(first_guess(MATERIAL), topology, geometry, s, warps.face, warps.middle)
+    return local_corners(SECTION, topology, geometry, s, warps.face, warps.middle)
 
 
 def fit_network_only(
     batch: Batch, sizes: tuple[int, int, int], stage: Stage, seed: int, keep: Keeper
 ) -> "NetworkOnly":
     """Return a network fitted to trials."""
-    trials = trial_poses(batch, MATERIAL)
+    trials = trial_poses(batch)
     released, gravity = jnp.array(RELEASED), LOAD.gravity
 
     def one(weights: NetworkWeights, t: TrialPoses, f: Array) -> Array:
@@ -99,16 +103,18 @@ def fit_network_only(
         own = _own(t.topology, t.geometry, s)
         joints = _placed(predicted.joints, own[0]) - _placed(true.joints, t.joints[f])
         middles = _placed(predicted.middles, own[1]) - _placed(true.middles, t.middles[f])
-        return loss(joints.at[t.topology.fixed, :4].set(0.0), middles, t.size, s)
+        counts = t.real, t.topology.real
+        return loss(joints.at[t.topology.fixed, :4].set(0.0), middles, t.size, s, counts)
 
     def value(weights: NetworkWeights, some: TrialPoses, frame: Array) -> Array:
         return jax.vmap(lambda t, f: one(weights, t, f))(some, frame).mean()
 
-    def draw(k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
-        return jax.tree.map(lambda x: x[k], trials), f
+    def draw(some: StageExamples, k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
+        return jax.tree.map(lambda x: x[k], some.trials), f
 
     begin = corrector.initial_weights(jax.random.key(seed), POSES, *sizes)
-    return NetworkOnly(descend(begin, value, draw, stage, len(batch), seed, keep))
+    examples = [StageExamples(trials, None, None, None, np.ones(len(batch)))]
+    return NetworkOnly(descend(begin, value, draw, stage, examples, seed, keep))
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,14 +131,14 @@ class NetworkOnly:
     @cached_property
     def _kernel(self) -> Any:
         def one(topology: Topology, joints: Array, ratio: Array) -> tuple[Array, Array]:
-            geometry = flat_geometry(topology, joints, MATERIAL.section)
+            geometry = flat_geometry(topology, joints, PROPERTIES)
 
             def frame(s: Array, gravity: Array) -> tuple[Array, Array]:
                 state = poses(self.weights, topology, geometry, ratio, s, gravity)
                 return placed(topology, geometry, state, *_own(topology, geometry, s))
 
             later = jax.vmap(frame)(jnp.array(RELEASED), LOAD.gravity)
-            before = first_frame(Parameters(first_guess(MATERIAL)), topology, geometry)
+            before = first_frame(SECTION, topology, geometry)
             joined: tuple[Array, Array] = jax.tree.map(
                 lambda a, b: jnp.concatenate([a[None], b]), tuple(before), later
             )

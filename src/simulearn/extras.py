@@ -19,6 +19,7 @@ EXTRAS = {  # package, as it is imported -> extra
     "jax": "train",
     "equinox": "train",
     "optax": "train",
+    "cv2": "photo",
 }
 
 

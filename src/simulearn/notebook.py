@@ -15,6 +15,7 @@ from simulearn.errors import InputError, Message
 from simulearn.grid import Grid, Validation
 from simulearn.interop.plan import plan
 from simulearn.interop.png import png
+from simulearn.material import name_of
 from simulearn.simulate import Failure, Result, remarks, summary
 from simulearn.simulate.result import Outcomes
 
@@ -136,7 +137,7 @@ KINDS: dict[str, Callable[[Any], Kinds]] = {  # by name, so that none is loaded 
 def _words(grid: Grid) -> str:
     return (
         f"Grid of {len(grid.joints)} joints and {len(grid.beams)} beams, "
-        f"material {grid.material}, fixed at joint {grid.fixed}"
+        f"material {name_of(grid.material)}, fixed at joint {grid.fixed}"
     )
 
 

@@ -8,27 +8,41 @@ from simulearn.grid import Rules, validate
 
 
 def test_the_shipped_ones_are_what_they_say():
-    assert shipped() == ["2x3", "3x3", "beams-removed", "calibration", "default", "sample"]
+    lattices = ["2x3", "3x3", "beams-removed", "calibration", "default", "sample"]
+    families = ["family", "family-fine", "family-kept-out", "family-test"]
+    assert shipped() == sorted([*lattices, *families])
     default = read_config("default")
     assert default.trials == 2000
     assert sum(default.is_test(k) for k in range(2000)) == 400
     assert default.rules == Rules()  # the file says what is left out elsewhere
     assert (
-        len(read_config("2x3").design(0)[0].beams),
-        len(read_config("3x3").design(0)[0].beams),
+        len(read_config("2x3").design(0).grid.beams),
+        len(read_config("3x3").design(0).grid.beams),
     ) == (17, 24)
     removed = read_config("beams-removed")
-    counts = {len(removed.design(k)[0].beams) for k in range(30)}
+    counts = {len(removed.design(k).grid.beams) for k in range(30)}
     assert max(counts) == 11
     assert min(counts) < 9
     seeds = [read_config(name).seed for name in shipped()]
     assert len(set(seeds)) == len(seeds)
 
 
+def test_families_have_kinds_and_members_and_some_kinds_are_kept_out():
+    learnt, test, kept = (read_config(f"family{x}") for x in ("", "-test", "-kept-out"))
+    assert set(test.kinds.shares) == set(learnt.kinds.shares)
+    assert not set(kept.kinds.shares) & set(learnt.kinds.shares)
+    assert len(kept.kinds.shares) == 3
+    designs = [test.design(k) for k in range(20)]
+    assert len({design.material.physics for design in designs}) > 12
+    assert len({design.kind for design in designs}) > 4
+    assert not learnt.solver.layout.core
+    assert test.solver.layout.core == kept.solver.layout.core == 1
+
+
 def test_designs_with_beams_removed_are_whole_and_valid():
     config = read_config("beams-removed")
     for k in range(30):
-        grid, _ = config.design(k)
+        grid = config.design(k).grid
         assert validate(grid, config.material).warnings == () or all(
             warning.code.startswith("beam-") for warning in validate(grid, config.material).warnings
         )

@@ -336,7 +336,7 @@ def test_a_torn_trial_is_made_anew_and_told(small, tmp_path, cut):
 @pytest.mark.parametrize("content", ["", "{", "[1]", "{}", "null"])
 def test_an_odd_file_among_the_failures_is_made_anew_and_told(small, tmp_path, content):
     folder = Folder(tmp_path / "set", small)
-    key = TrialJob.of(small.design(3)[0], small).key
+    key = TrialJob.of(small.design(3), small).key
     folder.failure(key).write_text(content, "utf-8")
     (tmp_path / "set" / "failures" / "notes.json").write_text(content, "utf-8")
     folder.forget_failures()
@@ -354,20 +354,20 @@ def test_a_torn_description_says_how_to_go_on(small, tmp_path):
 
 def test_the_key_depends_on_all_that_the_answer_depends_on(small: Config):
     def key(config: Config, k: int = 0) -> str:
-        return TrialJob.of(config.design(k)[0], config).key
+        return TrialJob.of(config.design(k), config).key
 
     finer = small.model_copy(update={"solver": small.solver.model_copy(update={"layers": 2})})
     more = small.model_copy(update={"trials": 99, "test_every": 0, "name": "other"})
     assert key(small) == key(more)
     assert len({key(small), key(small, 1), key(finer)}) == 3
-    job = TrialJob.of(small.design(0)[0], small)
+    job = TrialJob.of(small.design(0), small)
     heavier = json.loads(json.dumps(job.material))
     heavier["gravity"]["density"] = 1.0
     assert TrialJob(job.grid, heavier, job.solver).key != job.key
 
 
 def test_a_broken_answer_is_an_answer(small: Config):
-    job = TrialJob.of(small.design(0)[0], small)
+    job = TrialJob.of(small.design(0), small)
     answer = run(TrialJob(job.grid, {}, job.solver))
     assert answer.outcome == "broken"
     assert "ValidationError" in answer.reason
@@ -399,6 +399,6 @@ def test_no_room_for_an_answer_is_told_with_what_is_kept(small, tmp_path, monkey
 def test_answers_travel(small: Config):
     import pickle
 
-    job = TrialJob.of(small.design(0)[0], small)
+    job = TrialJob.of(small.design(0), small)
     assert pickle.loads(pickle.dumps(job)) == job
     assert pickle.loads(pickle.dumps(TrialOutcome("failed", reason="so"))).reason == "so"

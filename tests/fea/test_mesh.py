@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from simulearn.errors import InputError
 from simulearn.fea import COARSE, THREE_ACROSS, Layout, mesh
 from simulearn.fea.bar import bar
-from simulearn.fea.mesh import cuts
+from simulearn.fea.layout import cuts
 from simulearn.fea.points import bricks_of
 from simulearn.fea.printing import actuator_reaches_end
 from simulearn.grid import Grid, Rules, draw_valid, drop_beams, make, outline

@@ -73,7 +73,7 @@ def engines(monkeypatch):
         monkeypatch.setattr(
             search, "engine_of", lambda name, model=None: Pretended(name, mistake, bound)
         )
-        monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Pretended(name))
+        monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: Pretended(name))
 
     monkeypatch.setattr(search, "warm", lambda engine: None)
     put()
@@ -135,7 +135,7 @@ def test_a_token_stops_the_check_too(task, engines, monkeypatch):
                 raise CancelledError
             pytest.fail("went on")
 
-    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Slow(name))
+    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: Slow(name))
     found = optimize(task, cancel=token)
     assert found.interrupted
     assert found.error_mm == found.steps[-1].error_mm
@@ -148,7 +148,7 @@ def test_a_check_that_takes_too_long_is_given_up(task, engines, monkeypatch):
                 pass
             raise CancelledError
 
-    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Endless(name))
+    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: Endless(name))
     monkeypatch.setattr(search, "GRACE", 0.01)
     found = optimize(limited(task, seconds=0.01))
     assert not found.interrupted
@@ -232,7 +232,7 @@ def test_a_search_goes_on_with_its_checks_in_mind(task, engines, tmp_path):
 
 
 def test_finite_elements_without_an_answer_are_reported(task, engines, monkeypatch):
-    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name: Silent(name))
+    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: Silent(name))
     found = optimize(task)
     assert found.check.error_fea_mm is None
     assert found.check.why == "did not converge"

@@ -112,7 +112,9 @@ def test_an_estimate_that_nine_of_ten_stay_below(sample):
     rng = np.random.default_rng(0)
     sign = np.stack([np.ones(2000), rng.normal(size=2000)], axis=1)
     error = np.exp(0.5 * sign[:, 1] + 0.3 * rng.normal(size=2000))
-    trust = error_bound_of(sign[:1000], error[:1000], sample.batches)
+    seen = (np.zeros(2), np.eye(2))
+    others = (sign[500:1000], error[500:1000])
+    trust = error_bound_of(sign[:500], error[:500], others, seen, sample.batches)
     below = error[1000:] <= np.exp(sign[1000:] @ trust.weights)
     assert below.mean() == pytest.approx(0.9, abs=0.03)
     assert trust.weights[1] == pytest.approx(0.5, abs=0.05)
@@ -120,7 +122,7 @@ def test_an_estimate_that_nine_of_ten_stay_below(sample):
 
 def test_outside_the_ranges_the_bound_grows(fitted):
     bound = fitted[0].model.bound
-    (low, high), _ = bound.ranges
+    low, high = 4.0 * bound.ranges[:, 0]  # in thicknesses of PLA's section
     beams = np.array([[0, 1], [0, 2]])
 
     def of(size):

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import jax
@@ -15,7 +16,9 @@ from simulearn.learn.common.bundle import bundle_of
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium import corrector, native
 from simulearn.learn.equilibrium.kernels.network import outputs
+from simulearn.material import Family, draw_member, load_material
 from simulearn.mechanics.forces import BeamState
+from simulearn.mechanics.model import REFERENCE_WIDTH
 from simulearn.mechanics.path import grid_of, schedule_frames, trace
 from simulearn.mechanics.poses import Pose
 from simulearn.mechanics.topology import Topology, flat_geometry, topologies
@@ -35,16 +38,25 @@ def of(*grids) -> Designs:
     return Designs(grids[0].beams, grids[0].fixed, flat, ratios)
 
 
+def member(seed: int):
+    """A random material of the family, its own curl not none."""
+    return draw_member(Family(), load_material("pla-hot-water"), np.random.default_rng(seed).random)
+
+
 @pytest.mark.parametrize("rules", [Rules(), Rules(cells=(2, 3)), Rules(removed=(2, 2))])
 def test_networks_are_those_of_the_reference(model, rules):
     designs, frame = of(draw_valid(rules, 5, 1)[0]), 9
+    designs = replace(designs, material=member(3))
     corners = tuple(x[0] for x in corner_topology(designs.beams, designs.flat))
-    networks, material = native.networks_of(model.parameters, model.material), model.material
+    networks = native.networks_of(model.parameters)
+    (printed,) = native.prints_of(model.parameters.law, designs, 1.0)
+    p = printed.properties
+    scale = p.width / REFERENCE_WIDTH
     grid = grid_of(
         designs.beams, designs.fixed, designs.flat[0], designs.actuators[0], corners,
-        networks.section, material,
+        printed.section, p,
     )  # fmt: skip
-    frames = schedule_frames(len(designs.beams), material)
+    frames = schedule_frames(len(designs.beams), p.creep)
     path = trace(grid, frames)
     count = designs.flat.shape[1]
     valence = np.bincount(designs.beams.ravel(), minlength=count).astype(float)
@@ -53,25 +65,29 @@ def test_networks_are_those_of_the_reference(model, rules):
         out = np.zeros((12, 2, len(designs.beams), len(layers.size)))
         outputs(
             layers, grid.geometry, grid.layout.ends, grid.layout.fixed, grid.ratio, valence,
-            path.R, path.twists, frames.released, frames.gravity, networks.scale, 1, out,
+            path.R, path.twists, frames.released, frames.gravity, scale, printed.signs,
+            printed.strain, 1, out,
         )  # fmt: skip
         return out[frame]
 
     with jax.enable_x64(True):
         many = topologies(designs.beams, designs.fixed, designs.flat)
         topology = Topology(*(x[0] for x in many))
-        geometry = flat_geometry(topology, designs.flat[0], material.section)
-        R, p = path.R[frame].reshape(-1, 3, 3), path.p[frame]
-        state = BeamState(Pose(R[:count], p[:count]), Pose(R[count:], p[count:]))
+        geometry = flat_geometry(topology, designs.flat[0], p)
+        R, at = path.R[frame].reshape(-1, 3, 3), path.p[frame]
+        state = BeamState(Pose(R[:count], at[:count]), Pose(R[count:], at[count:]))
         features = corrector.features_of(
             topology, geometry, designs.actuators[0], state, path.twists[frame],
-            frames.released[frame], frames.gravity[frame],
+            frames.released[frame], frames.gravity[frame], p,
         )  # fmt: skip
         parameters = model.parameters
         theirs = corrector.corrections(parameters.network, topology, features)
         stress = corrector.stresses(parameters.stress, topology, features)
         both = [np.asarray(x).reshape(2, len(designs.beams), -1) for x in theirs]
-    np.testing.assert_allclose(ours(networks.corrections), np.concatenate(both, -1), atol=2e-6)
+    lengths = np.where(native.LENGTHS, scale, 1.0)
+    np.testing.assert_allclose(
+        ours(networks.corrections) * lengths, np.concatenate(both, -1), atol=2e-6
+    )
     np.testing.assert_allclose(
         ours(networks.stress), np.asarray(stress).reshape(2, len(designs.beams), -1), atol=2e-7
     )

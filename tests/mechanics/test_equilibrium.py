@@ -9,15 +9,16 @@ from simulearn.grid import Rules, draw_valid
 from simulearn.material import load_material
 from simulearn.mechanics.equilibrium import iterate
 from simulearn.mechanics.forces import BeamState, HalfBeams, forces, halves, moved, twists
+from simulearn.mechanics.model import section_of, unfitted
 from simulearn.mechanics.poses import Pose, exp_so3
+from simulearn.mechanics.properties import properties_of
 from simulearn.mechanics.rollout import every_frame, loads, rollout
-from simulearn.mechanics.section import first_guess
 from simulearn.mechanics.stiffness import exact_stiffness
 from simulearn.mechanics.topology import Topology, flat_geometry, topologies
 
 PLA = load_material("pla-hot-water")
 with jax.enable_x64(True):
-    LOAD = loads(PLA)
+    LOAD = loads(properties_of(PLA))
 
 
 def chain(count, length, stiffness, angle=0.0):
@@ -35,6 +36,7 @@ def chain(count, length, stiffness, angle=0.0):
         np.array(0),
         *(np.zeros((count + 1, 4), np.int64) for _ in range(4)),
         np.zeros((2, count), np.int64),
+        np.ones(count),
     )
     at = np.linspace(0, angle, 2 * count + 1)
     radius = length / angle if angle else None
@@ -195,7 +197,9 @@ def solved():
 def found(solved):
     """Where it is rolled out, and all that is found there."""
     design, _, function = solved
-    at = jax.tree.map(np.asarray, (design.joints, design.actuators, first_guess(PLA)))
+    at = jax.tree.map(
+        np.asarray, (design.joints, design.actuators, section_of(unfitted(), properties_of(PLA)))
+    )
     (_, (every, states, motions)), slopes = function(*at)
     assert motions.max() < 1e-9
     return at, every, states, slopes

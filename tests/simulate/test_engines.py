@@ -247,11 +247,22 @@ def test_an_edited_material_changes_the_next_answer(cell, tmp_path):
     assert light.material.digest != heavy.material.digest
     # Without gravity the flat frame loaded by nothing stays where it is, and creep does nothing.
     np.testing.assert_allclose(light.joints[-1], light.joints[-2], atol=1e-3)
-    # The learned engine refuses it, and names both.
+    # The learned engine has learnt the family that it is of.
+    learnt = one(engine("learned").simulate([grid])[0])
+    assert learnt.material == light.material
+    away = np.linalg.norm(learnt.centres[-1] - light.centres[-1], axis=1)
+    assert away.mean() < 0.02 * cell.dimension
+    # Four times the strain is far outside: it refuses that, says in what, and names both.
+    path.write_text(text.replace("active = 0.09261", "active = 0.37"), "utf-8")
     (refused,) = engine("learned").simulate([grid])
     assert refused.code == "material-not-learnt"
-    assert light.material.digest[:12] in refused.message
+    assert "strain of the active half is 0.37, learnt 0.05" in refused.message
     assert named.material.digest[:12] in refused.message
+    # A little outside it answers, and says so.
+    path.write_text(text.replace("active = 0.09261", "active = 0.14"), "utf-8")
+    near = one(engine("learned").simulate([grid])[0])
+    assert "material-beyond" in {message.code for message in near.warnings}
+    assert near.bound_mm > learnt.bound_mm
 
 
 def test_threads_and_one_after_the_other_give_the_same_bits(cell):

@@ -29,6 +29,7 @@ from grasshopper import (
 )
 
 from simulearn.grid import Grid, grid_from_dict, make
+from simulearn.material import material_text
 from simulearn.simulate import engine, one
 from simulearn.studio.settings import Settings
 
@@ -109,6 +110,7 @@ def test_what_hops_makes_of_the_inputs(place):
     kinds = {name: component.access(name) for name in component.inputs}
     assert kinds == {
         "Curves": "list", "Actuators": "list", "Fixed": "list", "Engine": "item", "Frame": "item",
+        "Material": "list",
     }  # fmt: skip
     assert component.inputs["Curves"]["AtLeast"] == 1
     assert component.inputs["Actuators"]["AtLeast"] == 0  # so Hops makes it optional
@@ -164,6 +166,29 @@ def test_simulate_gives_the_shape_that_the_engine_gives(place):
     assert len(component.flat("Axes")) == 12
     grid = grid_from_dict(json.loads(component.flat("Grid")[0]))
     assert (grid.joints == np.array(CORNERS)[:, :2]).all()
+
+
+def test_a_material_is_a_name_or_the_lines_of_a_file(place):
+    component = place("simulate")
+    words = {"Curves": drawn(), "Actuators": numbers(*RATIOS)}
+
+    def joints(*lines):
+        given = {"Material": [value("System.String", line) for line in lines]}
+        component.solve(words | given)
+        assert component.balloon.errors == []
+        return np.array(component.flat("Joints"))
+
+    pla = joints("pla-hot-water")
+    text = material_text("pla-hot-water").replace('name = "pla-hot-water"', 'name = "my-pla"')
+    assert joints(*text.splitlines()) == pytest.approx(pla, abs=1e-6)
+    weak = text.replace("active = 0.09261", "active = 0.0741").replace(
+        "shell = 0.09261", "shell = 0.0741"
+    )
+    heights = joints(weak)[:, 2]
+    assert np.ptp(heights) < 0.95 * np.ptp(pla[:, 2])
+    assert json.loads(component.flat("Grid")[0])["material"] == "my-pla"
+    component.solve(words | {"Material": [value("System.String", "/etc/passwd")]})
+    assert "it is one of pla-hot-water" in component.balloon.errors[0]
 
 
 def test_the_first_frame_is_flat(place):

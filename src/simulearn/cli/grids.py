@@ -84,8 +84,8 @@ def validation_of(grid: Grid, model: str | None) -> Validation:
 
     bundle = bundle_of(model)
     bundle.check()
-    training = bundle.card.range
-    return validate(grid, load_material(grid.material), training=training)
+    material = load_material(grid.material)
+    return validate(grid, material, training=bundle.card.range.of(material))
 
 
 def _cells(text: str) -> tuple[int, int]:

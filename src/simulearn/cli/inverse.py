@@ -21,7 +21,7 @@ from simulearn.cli.base import (
     warn,
     write_json,
 )
-from simulearn.cli.progress import preparing
+from simulearn.cli.progress import counting, preparing
 from simulearn.cli.search_report import (
     live,
     ranking_figures,
@@ -38,6 +38,15 @@ if TYPE_CHECKING:
 
 EngineOption = Annotated[
     str | None, typer.Option(help="Another engine than the task's: fea, calculix, beams, learned.")
+]
+ToleranceOption = Annotated[
+    float | None,
+    typer.Option(
+        min=1e-6,
+        metavar="MM",
+        help="How far a print may be from goals that say nothing of it: with what probability it "
+        "is nearer is told.",
+    ),
 ]
 ModelOption = Annotated[
     str | None, typer.Option(help="A learned model: default, paper, or its folder.")
@@ -65,6 +74,14 @@ def optimize(
         int | None,
         typer.Option(min=0, help="How often to go on from targets that FEA has corrected."),
     ] = None,
+    tolerance: ToleranceOption = None,
+    robust: Annotated[
+        bool | None,
+        typer.Option(
+            "--robust/--no-robust",
+            help="Whether prints of the design shall come close, and not only the design.",
+        ),
+    ] = None,
     afresh: Annotated[
         bool, typer.Option("--afresh", help="Do not go on from an earlier run in the folder.")
     ] = False,
@@ -78,7 +95,7 @@ def optimize(
 
     wanted = _of_material(read_task(task, paths=True), material)
     limits = {"seconds": seconds, "iterations": iterations, "corrections": corrections}
-    named = {"method": method, "engine": engine}
+    named = {"method": method, "engine": engine, "tolerance": tolerance, "robust": robust}
     wanted = wanted.model_copy(
         update={
             **{key: value for key, value in named.items() if value is not None},
@@ -119,7 +136,7 @@ def optimize(
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
-    for line in search_words(figures, result):
+    for line in search_words(figures, result, wanted.aims.vertices):
         out.print(line)
     names = ["best.json", "summary.json", "history.csv", *names]
     out.print(f"wrote {escape(str(folder))}/{', '.join(names)}")
@@ -153,6 +170,7 @@ def rank(
         Path | None,
         typer.Option(help="The file for it: a task if one was given, else a grid."),
     ] = None,
+    tolerance: ToleranceOption = None,
     material: MaterialOption = None,
     as_json: Json = False,
 ) -> None:
@@ -170,8 +188,13 @@ def rank(
     task = _of_material(read_task(design, paths=True), material) if _is_task(design) else None
     name = engine or (task.engine if task else "learned")
     simulator = engine_of(name, model)
-    with preparing(quiet=as_json):
-        ranking = rank(task or grid_of(design, material), simulator)
+    if tolerance is not None:
+        if task is None:
+            raise InputError("--tolerance is of goals; give a task, which has some")
+        task = task.model_copy(update={"tolerance": tolerance})
+    with preparing(quiet=as_json), counting("prints", quiet=as_json) as progress:
+        ranking = rank(task or grid_of(design, material), simulator, progress=progress)
+    warn(ranking.warnings)
     if pick is not None and to is not None:
         if pick > len(ranking.best):
             raise InputError(f"--pick is {pick}; there are {len(ranking.best)} suggestions")

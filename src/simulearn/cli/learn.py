@@ -19,6 +19,7 @@ from simulearn.files import replacing
 from simulearn.material import Material, read_material
 
 if TYPE_CHECKING:
+    from simulearn.learn.common.bundle import Bundle
     from simulearn.learn.common.evaluate import Evaluation
 
 
@@ -133,9 +134,11 @@ def evaluate(
     data = read_dataset(dataset, stress=False)
     batches = for_testing(data)
     if material is not None:
-        batches = [replace(batch, material=read_material(material)) for batch in batches]
+        given = read_material(material)
+        batches = [replace(batch, material=given, materials=()) for batch in batches]
     for batch in batches:
-        _check_material(bundle.card.name, bundle.card.material, batch.material)
+        for own in batch.materials or (batch.material,):
+            _check_material(bundle, own)
     with counting("trials", quiet=as_json) as progress:
         evaluation = evaluate_(trained, batches, progress)
     figures = {
@@ -153,15 +156,19 @@ def evaluate(
         print(json.dumps(figures, allow_nan=False))
         return
     out.print(_table(figures))
+    for part in ("kinds", "members"):
+        if part in figures:
+            out.print(_parts_table(figures[part], part))
     if output is not None:
         out.print(f"wrote {escape(str(output))}/figures.json, trials.csv, errors.png, grids.png")
 
 
-def _check_material(model: str, learnt: Material, given: Material) -> None:
-    """Raise where trials are not of the material that a model has learnt."""
-    if given.physics != learnt.physics:
+def _check_material(bundle: "Bundle", given: Material) -> None:
+    """Raise where trials are not of a material that a model has learnt."""
+    learnt, family = bundle.card.material, getattr(bundle.model, "learnt", None)
+    if given.physics != learnt.physics and (family is None or family.wrong(given, learnt)):
         raise InputError(
-            f'the trials are of {given.identity}; the model "{model}" has learnt '
+            f'the trials are of {given.identity}; the model "{bundle.card.name}" has learnt '
             f"{learnt.identity}; name another with --material",
             "material-not-evaluated",
             "material",
@@ -205,6 +212,29 @@ def _table(figures: dict[str, Any]) -> Table:
         values = [row[k] for k in row if k != "frame"]
         table.add_row(str(row["frame"]), *(f"{x:.3f}" for x in values))
     return table
+
+
+def _parts_table(parts: dict[str, Any], title: str) -> Table:
+    """Return the figures of kinds of grids, or of thirds of the materials' numbers."""
+    table = Table(box=None, title=f"by {title[:-1]}", title_justify="left")
+    table.add_column(title[:-1])
+    for name in ("trials", "mean %", "median %", "worst %", "below bound %", "bound / error"):
+        table.add_column(name, justify="right")
+    rows = parts if title == "kinds" else _thirds(parts)
+    keys = ("mean_percent", "median_percent", "worst_percent")
+    for name, row in rows.items():
+        bound = [f"{row[k]:.0f}" if "per" in k else f"{row[k]:.1f}"
+                 for k in ("below_bound_percent", "bound_over_error") if k in row]  # fmt: skip
+        table.add_row(name, str(row["trials"]), *(f"{row[k]:.3f}" for k in keys), *bound)
+    return table
+
+
+def _thirds(parts: dict[str, Any]) -> dict[str, Any]:
+    rows = {}
+    for name, two in parts.items():
+        rows[f"{name} to {two['low']['most']:.3g}"] = two["low"]
+        rows[f"{name} from {two['high']['least']:.3g}"] = two["high"]
+    return rows
 
 
 def _best(figures: dict[str, Any]) -> str:

@@ -1,9 +1,9 @@
 """Reports of searches and rankings: words, tables and pictures for people, figures for machines."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,14 +17,22 @@ from simulearn.grid import grid_to_dict
 from simulearn.simulate.summary import remarks
 
 if TYPE_CHECKING:
-    from simulearn.inverse import Ranking, SearchResult, Step, Suggestion, Task
+    from simulearn.inverse import Ranking, SearchResult, Step, Suggestion, Task, Vertex
+    from simulearn.inverse.probability import Probability
     from simulearn.inverse.search import Progress
 
 BARS = "▁▂▃▄▅▆▇█"
 
 
-def search_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
+def search_words(
+    figures: dict[str, Any], result: "SearchResult", goals: "Sequence[Vertex]"
+) -> Iterator[str]:
     """Yield what a person wants to know."""
+    yield from _design_words(figures, result)
+    yield from _print_words(result, goals)
+
+
+def _design_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
     yield (
         f"{figures['start_mm']:.2f} mm to begin with, [bold]{result.error_mm:.2f} mm[/] by the "
         f"engine {figures['engine']} after {result.iterations} iterations and {result.designs} "
@@ -47,6 +55,23 @@ def search_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[st
             f"[yellow]that is beyond the {check.bound_mm:.2f} mm of the engine's bound:[/] "
             "trust finite elements, or go on with more --corrections"
         )
+
+
+def _print_words(result: "SearchResult", goals: "Sequence[Vertex]") -> Iterator[str]:
+    """Yield how often prints meet the goals, where that was computed."""
+    told, before = result.probability, result.nominal
+    if told is None:
+        return
+    yield f"prints: [bold]{told.words}[/]"
+    if before is not None and told is before:
+        yield (
+            "[yellow]no robust design was found:[/] prints of the best one meet the goals as often"
+        )
+    elif before is not None:
+        yield f"of the best design without regard to prints: {before.words}"
+    for k, (vertex, share, most) in enumerate(zip(goals, told.goals, told.tolerances, strict=True)):
+        if share is not None:
+            yield f"  goal {k} ({vertex}): {100 * share:.0f} % within {most:g} mm"
 
 
 def search_pictures(
@@ -114,11 +139,18 @@ def ranking_figures(ranking: "Ranking", engine: str) -> dict[str, Any]:
     return {
         "engine": engine,
         "error_mm": ranking.error_mm,
+        **_probability(ranking),
         "modifications": [_modification(one) for one in ranking.suggestions],
         "suggestions": [
-            {**_modification(one), "grid": grid_to_dict(one.grid)} for one in ranking.best
+            {**_modification(one), **_probability(one), "grid": grid_to_dict(one.grid)}
+            for one in ranking.best
         ],
+        **({"warnings": [asdict(one) for one in ranking.warnings]} if ranking.warnings else {}),
     }
+
+
+def _probability(part: "Ranking | Suggestion") -> dict[str, Any]:
+    return {} if part.probability is None else {"probability": part.probability.to_dict()}
 
 
 def _modification(one: "Suggestion") -> dict[str, Any]:
@@ -146,12 +178,27 @@ def ranking_table(ranking: "Ranking", goals: bool) -> Table:
     if goals:
         table.add_column("error, mm", justify="right")
         table.add_column("gain", justify="right")
+    of_prints = ranking.probability
+    if of_prints is not None:
+        table.add_column("prints within", justify="right")
+        table.caption_justify = "left"
+        table.caption = (
+            f"within the tolerances of all goals, of {of_prints.drawn} prints by "
+            f"{of_prints.engine}; {_share(of_prints)} as it is"
+        )
     table.add_column("moves, mm", justify="right")
     for k, one in enumerate(ranking.best, 1):
         gain = ranking.error_mm - one.error_mm
         errors = [f"{one.error_mm:.1f}", f"{gain:+.1f}"] if goals else []
-        table.add_row(str(k), one.change.words, *errors, f"{one.moved_mm:.1f}")
+        shares = [] if of_prints is None else [_share(one.probability)]
+        table.add_row(str(k), one.change.words, *errors, *shares, f"{one.moved_mm:.1f}")
     return table
+
+
+def _share(told: "Probability | None") -> str:
+    if told is None or told.together is None:
+        return "not known"
+    return f"{100 * told.together:.0f} %"
 
 
 @contextmanager
@@ -183,7 +230,8 @@ def _line(step: "Step") -> None:
 
 
 def _progress(step: "Step") -> str:
-    corrected = f", correction {step.phase}" if step.phase else ""
+    corrected = f", correction {step.phase}" if step.phase > 0 else ""
+    corrected = ", prints" if step.phase < 0 else corrected
     return (
         f"{step.error_mm:.2f} mm, {step.designs} designs, iteration {step.iteration}{corrected}, "
         f"{step.seconds:.0f} s"

@@ -24,6 +24,7 @@ from simulearn.cli.base import (
 )
 from simulearn.cli.grids import ModelOption, validation_of
 from simulearn.cli.progress import counting, preparing
+from simulearn.cli.scatter import SimulatedPrints, spread_table
 from simulearn.errors import InputError
 
 if TYPE_CHECKING:
@@ -42,6 +43,10 @@ def simulate(
         str, typer.Option(help="The engine: fea, calculix, beams or learned.")
     ] = "fea",
     model: ModelOption = None,
+    mesh: Annotated[
+        str | None,
+        typer.Option(help="The mesh of the engine fea: default, or fine, which takes longer."),
+    ] = None,
     material: MaterialOption = None,
     output: Annotated[
         list[str] | None,
@@ -53,27 +58,40 @@ def simulate(
             "each.",
         ),
     ] = None,
+    scatter: Annotated[
+        bool,
+        typer.Option("--scatter", help="Simulate prints of each grid, too: how far they differ."),
+    ] = False,
+    prints: Annotated[
+        int | None,
+        typer.Option(min=4, help="With --scatter: how many prints; so many that it is quick."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Simulate grids: twelve frames, from flat through release to creep."""
     targets = output or []
     files = [Path(target) for target in targets]
     names = list(dict.fromkeys(grids))
+    if prints is not None and not scatter:
+        raise InputError("--prints goes with --scatter: how many prints are simulated")
+    spread = SimulatedPrints(prints, as_json) if scatter else None
     a_folder = any(target.endswith(("/", os.sep)) for target in targets)
     if len(names) == 1 and not a_folder:
         design = grid_of(names[0], material)
         outputs.check(files, Path(names[0]))
-        _one(design, _engine(engine, model), engine, model, files, as_json)
+        answering = _engine(engine, model, mesh)
+        _one(design, answering, engine, model, files, spread, as_json)
         return
     if len(files) > 1 or (files and not a_folder and files[0].suffix and not files[0].is_dir()):
         raise InputError(f"{files[-1]}: several grids go to one folder, whose name ends in /")
-    _many(names, engine, model, material, files[0] if files else None, as_json)
+    answering = _engine(engine, model, mesh)
+    _many(names, answering, engine, material, files[0] if files else None, spread, as_json)
 
 
-def _engine(name: str, model: str | None) -> "StreamingSimulator":
+def _engine(name: str, model: str | None, mesh: str | None) -> "StreamingSimulator":
     from simulearn.simulate import engine
 
-    return engine(name, model)
+    return engine(name, model, mesh)
 
 
 def _one(
@@ -82,11 +100,14 @@ def _one(
     engine: str,
     model: str | None,
     files: list[Path],
+    spread: SimulatedPrints | None,
     as_json: bool,
 ) -> None:
     """Simulate one grid, and write it to files."""
     from simulearn.simulate import one, remarks, result_to_dict, summary
 
+    if spread is not None:
+        spread.check(design)
     before = validation_of(design, {"learned": model or "default"}.get(engine)).warnings
     warn(before)
     with preparing(quiet=as_json), counting("frames", quiet=as_json) as progress:
@@ -96,6 +117,8 @@ def _one(
     if not as_json:
         for line in remarks(result):
             err.print(f"[yellow]note:[/] {escape(line)}")
+    if spread is not None:
+        result = spread.added(result, answering)
     for path in files:
         outputs.write(result, path)
     if as_json:
@@ -103,15 +126,18 @@ def _one(
         print(json.dumps(written if files else result_to_dict(result), allow_nan=False))
         return
     out.print(_table(result))
+    if result.scatter is not None:
+        out.print(spread_table(result.scatter, result.grid.fixed))
     print_files(files)
 
 
 def _many(
     names: list[str],
+    answering: "StreamingSimulator",
     engine: str,
-    model: str | None,
     material: Path | None,
     folder: Path | None,
+    spread: SimulatedPrints | None,
     as_json: bool,
 ) -> None:
     """Simulate many grids; each outcome is written as soon as it is there."""
@@ -119,13 +145,14 @@ def _many(
 
     if folder is not None:
         _check_names(names)
-    answering = _engine(engine, model)
     designs: dict[str, Grid] = {}
     outcomes: dict[str, Outcome] = {}
     unread: dict[str, InputError] = {}
     for name in names:
         try:
             designs[name] = grid_of(name, material)
+            if spread is not None:
+                spread.check(designs[name])
         except InputError as error:
             unread[name] = error
     if folder is not None:
@@ -138,6 +165,8 @@ def _many(
     places = list(designs)
     with preparing(quiet=as_json), counting("frames", quiet=as_json) as progress:
         for k, outcome in answering.stream(list(designs.values()), progress):
+            if spread is not None and isinstance(outcome, Result):
+                outcome = spread.added(outcome, answering)
             if folder is not None:
                 write_json(outcome, targets[places[k]])
                 if isinstance(outcome, Result):  # what is written need not stay in memory
@@ -151,7 +180,8 @@ def _many(
             data = _unread(row) if isinstance(row, InputError) else outcome_to_dict(row)
             if folder is not None:
                 kept = ("schema", "code", "where", "message", "hint", "seconds", "stable",
-                        "bound_mm", "snaps", "warnings", "material", "model")  # fmt: skip
+                        "bound_mm", "snaps", "warnings", "material", "model",
+                        "scatter")  # fmt: skip
                 data = {"file": str(targets[name])} | {k: data[k] for k in kept if k in data}
             listed.append({"name": name} | data)
         print(json.dumps({"engine": engine, "failed": failed, "results": listed}, allow_nan=False))
@@ -247,7 +277,10 @@ def _table(result: "Result") -> Table:
     numbers: dict[str, Any] = summary(result)
     motion = "rise" if numbers["rise_mm"] > 0 else "fall"
     work = f", {numbers['iterations']} iterations" if "iterations" in numbers else ""
-    caption = f"{result.engine}, {_seconds(result.seconds)}{work}; millimetres, +z up"
+    mesh = ""
+    if "mesh" in numbers:
+        mesh = f", {numbers['mesh']} mesh of {numbers['bricks']:,} bricks"
+    caption = f"{result.engine}{mesh}, {_seconds(result.seconds)}{work}; millimetres, +z up"
     caption += f"\nmaterial {result.material}"
     if result.model is not None:
         caption += f", model {result.model}"

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from simulearn.dataset.config import Config, config_of
 from simulearn.errors import InputError
+from simulearn.fea import COARSE
 from simulearn.grid import Grid
 from simulearn.material import Material
 
@@ -45,6 +46,8 @@ class Batch:
         reference: name or path of it in the designs.
         materials: (T,) of each trial, where they differ.
         kinds: (T,) name of each trial's kind of grid, where there are several.
+        mesh: 0 for the default mesh, 1 for a finer one.
+        snapped: (T,) whether a trial snaps or leaves an unstable balance on its path.
     """
 
     beams: NDArray[np.int64]
@@ -60,6 +63,8 @@ class Batch:
     reference: str
     materials: tuple[Material, ...] = ()
     kinds: tuple[str, ...] = ()
+    mesh: float = 0.0
+    snapped: tuple[bool, ...] = ()
 
     def __len__(self) -> int:
         return len(self.numbers)
@@ -78,12 +83,13 @@ class Batch:
         names = ("flat", "actuators", "joints", "sections", "numbers", "test")
         stress = None if self.stress is None else self.stress[which]
         stay = np.arange(len(self))[which]
-        lists = {
+        lists: dict[str, Any] = {
             name: tuple(values[k] for k in stay)
-            for name in ("materials", "kinds")
+            for name in ("materials", "kinds", "snapped")
             if (values := getattr(self, name))
         }
-        return replace(self, stress=stress, **lists, **{name: getattr(self, name)[which] for name in names})
+        arrays = {name: getattr(self, name)[which] for name in names}
+        return replace(self, stress=stress, **lists, **arrays)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,11 +141,12 @@ def read_dataset(path: Path | str, split: Split | None = None, stress: bool = Tr
                 )
             material = Material.model_validate_json(file.attrs["material"])
             groups = file["topologies"].values()
-            batches = [_batch(group, material, split, stress) for group in groups]
             attributes = dict(file.attrs)
             failures = [(int(k), str(why)) for k, why in json.loads(attributes.pop("failures"))]
             records = _records(file)
             config = config_of(json.loads(attributes.pop("config")), str(path))
+            mesh = float(config.solver.layout != COARSE)
+            batches = [_batch(group, material, split, stress, mesh) for group in groups]
             sha256, redraws = str(attributes.pop("sha256")), int(attributes.pop("redraws"))
     except OSError as error:
         raise InputError(f"{path}: {_why_not(error)}") from error
@@ -192,7 +199,9 @@ def digest(file: h5py.File) -> str:
     return sha.hexdigest()
 
 
-def _batch(group: h5py.Group, material: Material, split: Split | None, stress: bool) -> Batch:
+def _batch(
+    group: h5py.Group, material: Material, split: Split | None, stress: bool, mesh: float
+) -> Batch:
     test = group["test"][...].astype(bool)
     which = np.flatnonzero(np.ones_like(test) if split is None else test == (split == "test"))
     beams = group["beams"][...].astype(np.int64)
@@ -210,6 +219,8 @@ def _batch(group: h5py.Group, material: Material, split: Split | None, stress: b
         reference=str(group.attrs["material"]),
         materials=tuple(Material.model_validate_json(x) for x in _texts(group, "materials", which)),
         kinds=_texts(group, "kinds", which),
+        mesh=mesh,
+        snapped=tuple(bool(json.loads(x).get("snaps")) for x in _texts(group, "records", which)),
     )
 
 

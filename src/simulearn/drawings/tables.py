@@ -5,28 +5,23 @@ are points: x, y or x, y, z; a column of names, or an empty row, parts polylines
 columns in any order.
 """
 
-import csv
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from math import isfinite
 
 import numpy as np
 
 from simulearn.drawings.drawing import Drawing, Line, Unit
 from simulearn.drawings.points import MOST_SEGMENTS, too_many
+from simulearn.drawings.rows import SAMPLE, Row, number_in, rows_of, separator_of, value_in
 from simulearn.drawings.units import unit_named
 from simulearn.errors import InputError
 
-SEPARATORS = (";", "\t", ",", "|", " ")
-COMMENTS = ("#", "//")
 GROUPS = ("id", "line", "polyline", "curve", "group", "name", "path", "beam", "part", "branch")
 AXES = "xyz"
 ENDS = ("from", "to", "start", "end", "begin", "a", "b", "p0", "p1", "p2", "pt1", "pt2")
-# A table is known by its first rows.
-SAMPLE = 50
 
 
 @dataclass(frozen=True)
@@ -46,19 +41,6 @@ class Columns:
     unit: Unit | None = None
 
 
-@dataclass(frozen=True)
-class Row:
-    """A row of a table.
-
-    Attributes:
-        number: counted from 1, as in an editor.
-        cells: without the blanks around them; none in an empty row.
-    """
-
-    number: int
-    cells: list[str]
-
-
 def read_csv(text: str) -> Drawing:
     """Return the lines in a table.
 
@@ -68,13 +50,13 @@ def read_csv(text: str) -> Drawing:
     Raises:
         InputError: it is no such table, or a cell is no finite number; one line says where.
     """
-    separator = _separator(text)
-    rows = list(_rows(text, separator))
+    separator = separator_of(text)
+    rows = list(rows_of(text, separator))
     filled = [row for row in rows if row.cells]
     if not filled:
         raise InputError("holds no rows", "no-lines", "lines")
     comma = separator != ","
-    named = [k for k, cell in enumerate(filled[0].cells) if _value(cell, comma) is None]
+    named = [k for k, cell in enumerate(filled[0].cells) if value_in(cell, comma) is None]
     columns = _named(filled[0].cells) if named else None
     if columns is None:
         columns = _unnamed(filled, comma)
@@ -87,48 +69,6 @@ def read_csv(text: str) -> Drawing:
     if sum(len(line.points) - 1 for line in lines) > MOST_SEGMENTS:
         raise too_many()
     return Drawing("CSV", lines, unit=columns.unit, plain=columns.unit is None)
-
-
-def _separator(text: str) -> str:
-    """Return what separates the cells: what parts the first rows into equally many, at least 2."""
-    rows = [r for line in text.split("\n") if (r := line.strip()) and not r.startswith(COMMENTS)]
-    best, most = ",", 0
-    for separator in SEPARATORS:
-        counts = Counter(len(_cells(row, separator)) for row in rows[:SAMPLE])
-        cells, times = max(counts.items(), key=lambda item: item[1], default=(1, 0))
-        if cells > 1 and times > most:
-            best, most = separator, times
-    return best
-
-
-def _cells(row: str, separator: str) -> list[str]:
-    if separator == " ":
-        return row.split()
-    return [cell.strip() for cell in next(csv.reader([row], delimiter=separator))]
-
-
-def _rows(text: str, separator: str) -> Iterator[Row]:
-    """Yield the rows that are no comments."""
-    for number, line in enumerate(text.split("\n"), 1):
-        row = line.strip(" \n" if separator == "\t" else None)
-        if row.startswith(COMMENTS):
-            continue
-        try:
-            cells = _cells(row, separator) if row else []
-        except csv.Error as error:
-            raise InputError(f"row {number}: {error}", "table", f"row {number}") from error
-        while cells and not cells[-1]:  # a separator at the end of the row
-            del cells[-1]
-        yield Row(number, cells)
-
-
-def _value(cell: str, comma: bool) -> float | None:
-    """Return the number in a cell, also one that is not finite; None if it is none."""
-    text = cell.replace(",", ".") if comma and cell.count(",") == 1 and "." not in cell else cell
-    try:
-        return float(text) if "_" not in text else None
-    except ValueError:
-        return None
 
 
 def _named(header: Sequence[str]) -> Columns | None:
@@ -172,7 +112,7 @@ def _unnamed(rows: Sequence[Row], comma: bool) -> Columns:
     texts = [
         k
         for k in range(width)
-        if all(len(r.cells) > k and _value(r.cells[k], comma) is None for r in rows[:SAMPLE])
+        if all(len(r.cells) > k and value_in(r.cells[k], comma) is None for r in rows[:SAMPLE])
     ]
     numbers = [k for k in range(width) if k not in texts]
     if len(texts) > 1 or len(numbers) not in (2, 3, 4, 6):
@@ -192,7 +132,7 @@ def _unnamed(rows: Sequence[Row], comma: bool) -> Columns:
 
 def _are_names(rows: Sequence[Row], comma: bool) -> bool:
     """Return whether a first column of numbers names the line of each point: 0, 0, 1, 1, 1, 2."""
-    cells = (_value(row.cells[0], comma) for row in rows)
+    cells = (value_in(row.cells[0], comma) for row in rows)
     values = [value for value in cells if value is not None and value.is_integer()]
     if len(values) < len(rows):
         return False
@@ -200,23 +140,9 @@ def _are_names(rows: Sequence[Row], comma: bool) -> bool:
     return len(set(values)) == len(runs) and min(runs) > 1 and values == sorted(values)
 
 
-def _number(row: Row, column: int, comma: bool) -> float:
-    """Return the number in a cell of a row, or raise InputError."""
-    where = f"row {row.number}, column {column + 1}"
-    if column >= len(row.cells):
-        text = f"row {row.number} has {len(row.cells)} cells; column {column + 1} is missing"
-        raise InputError(text, "table", where)
-    value = _value(row.cells[column], comma)
-    if value is None or not isfinite(value):
-        kind = "number" if value is None else "finite number"
-        text = f'{where} is "{row.cells[column][:40]}"; a coordinate is a {kind}'
-        raise InputError(text, "table", where)
-    return value
-
-
 def _points(row: Row, columns: Columns, comma: bool) -> list[list[float]]:
     """Return the points (x, y, z) in a row."""
-    points = [[_number(row, column, comma) for column in end] for end in columns.ends]
+    points = [[number_in(row, column, comma) for column in end] for end in columns.ends]
     return [[*point, 0.0][:3] for point in points]
 
 

@@ -3,7 +3,7 @@
 Inside a beam only neighbouring slabs know each other: first the nodes inside each slab are
 eliminated, then the faces between, halving by halving, until a beam is one dense front between its
 two joints. What is left couples joints along the beams; they are eliminated one by one, those with
-the fewest neighbours first.
+the fewest neighbours first, and in each one the nodes first that no beam meets.
 """
 
 from collections import defaultdict
@@ -29,7 +29,7 @@ def fronts_of(solid: Solid) -> Fronts:
         if joint < 0:
             fronts += beam[~joint]
         else:
-            fronts.append(_joint_front(structure, solid, order, joint, parent))
+            fronts += _joint_fronts(structure, solid, order, joint, parent)
     return _packed(fronts, solid)
 
 
@@ -137,14 +137,23 @@ def _beam_fronts(structure: Structure, solid: Solid) -> list[list[_Front]]:
     return beams
 
 
-def _joint_front(
+def _joint_fronts(
     structure: Structure, solid: Solid, order: JointOrder, joint: int, children: int
-) -> _Front:
+) -> list[_Front]:
+    """Return the fronts of a joint: first what no beam meets, then what beams do."""
     each = int((solid.parts[:, 0] < 0).sum()) // len(structure.blocks)
     faces = [structure.faces[b, -end] for b, end in order.faces[joint]]
     rest = np.unique(np.concatenate(faces)) if faces else np.zeros(0, dtype=np.int64)
     bricks = joint * each + np.arange(each)
-    return _Front(structure.blocks[joint], rest, bricks, children)
+    block = structure.blocks[joint]
+    met = np.isin(block, structure.faces[:, [0, -1]][structure.ends == joint])
+    if met.all():
+        return [_Front(block, rest, bricks, children)]
+    none = np.zeros(0, dtype=np.int64)
+    return [
+        _Front(block[~met], block[met], bricks, 0),
+        _Front(block[met], rest, none, children + 1),
+    ]
 
 
 def _packed(fronts: list[_Front], solid: Solid) -> Fronts:

@@ -1,18 +1,16 @@
 """From a grid to its solid: structured 20-node bricks in joints and beams.
 
-A joint is a quadrilateral block, a beam a row of slabs from one joint's side to another's. Both
-are divided across by the same breaks, so that they share the nodes of the face where they meet.
-Brick faces lie on the ends of every actuator: off-grid ends would shift tips by tens of per cent.
+A joint is a quadrilateral block, a beam a row of slabs from one joint's side to another's; see
+`layout` for where they are divided.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, ElementHexS2, MeshHex
 
 from simulearn.errors import InputError
-from simulearn.fea.printing import actuator_reaches_end, printing
+from simulearn.fea.layout import COARSE, Layout, breaks_of, net_lengths
+from simulearn.fea.printing import printing
 from simulearn.fea.sampling import sampling
 from simulearn.fea.solid import Solid
 from simulearn.grid import Grid, Outline, outline
@@ -21,58 +19,7 @@ from simulearn.material import Material, Section
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-
-@dataclass(frozen=True)
-class Layout:
-    """How finely a grid is meshed.
-
-    Attributes:
-        core: bricks across the core between the shells; with 0 one brick spans the whole
-            section and its integration points tell shell from core.
-        slabs: slabs along a beam, even, so that the middle is a face.
-        layers: bricks through each half.
-    """
-
-    core: int = 0
-    slabs: int = 8
-    layers: int = 1
-
-    def __post_init__(self) -> None:
-        if self.core < 0 or self.layers < 1 or self.slabs < 4 or self.slabs % 2:
-            raise InputError(f"{self}: core is at least 0, slabs at least 4 and even, layers 1")
-
-    def across(self, section: Section) -> Array:
-        """Return the breaks across a section, 0 to 1."""
-        shell = section.shell / section.width
-        if self.core == 0:
-            return np.array([0.0, 1.0])
-        return np.unique(np.r_[0, np.linspace(shell, 1 - shell, self.core + 1), 1])
-
-
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])  # two points on [0, 1]
-
-COARSE = Layout()  # 210 bricks in a 2x2 grid
-FINE = Layout(core=1, slabs=16)  # 1,314: a tenth of a per cent from what finer ones converge to
-THREE_ACROSS = Layout(core=1)  # shell, core, shell: one growth per brick, as CalculiX needs it
-
-
-def cuts(ratio: float, slabs: int) -> Array:
-    """Return where along a beam its slabs begin and end, 0 to 1, an actuator's ends among them.
-
-    Args:
-        ratio: actuator length over the beam's net length; the actuator is centred.
-        slabs: number of slabs, even.
-
-    Returns:
-        (slabs + 1,) positions; uniform for every ratio that is a multiple of 2 / slabs.
-    """
-    ratio = abs(ratio)
-    if ratio == 0 or ratio >= 1:
-        return np.linspace(0, 1, slabs + 1)
-    half = int(np.clip(round(ratio * slabs / 2), 1, slabs // 2 - 1))
-    first = np.linspace(0, (1 - ratio) / 2, slabs // 2 - half + 1)
-    middle = np.linspace((1 - ratio) / 2, (1 + ratio) / 2, 2 * half + 1)
-    return np.concatenate([first, middle[1:-1], 1 - first[::-1]])
 
 
 def mesh(
@@ -92,13 +39,8 @@ def mesh(
     grid = grid.centred
     section = material.section
     shape = outline(grid, section)
-    across = layout.across(section)
-    up = np.linspace(-0.5, 0.5, 2 * layout.layers + 1) * section.thickness
-    axis = shape.beams.mean(axis=2)  # of the beams, (B, [start, end], 2)
-    length = np.linalg.norm(axis[:, 1] - axis[:, 0], axis=1)
-    # Slivers beyond an actuator's end would only spoil the mesh.
-    ratios = np.where(actuator_reaches_end(grid.actuators, length), 1.0, grid.actuators)
-    along = np.array([cuts(ratio, layout.slabs) for ratio in ratios])
+    along, across, up = breaks_of(grid, shape, section, layout)
+    up = (up - 0.5) * section.thickness
 
     joints, beams = _number(grid, shape, layout.slabs, len(across), len(up))
     places = np.empty((max(joints.max(), beams.max()) + 1, 3))
@@ -161,7 +103,7 @@ def mesh(
     section_ = beams[:, [0, layout.slabs // 2, -1]][:, :, [0, -1]]  # (B, 3, [right, left], up)
     samples, shares = sampling(
         along,
-        length,
+        net_lengths(shape),
         across,
         layout.layers,
         points,

@@ -4,9 +4,13 @@ Each increment starts from a quadratic extrapolation of the last three states. O
 converge is halved, and so is one that leads through unstable states or far from the extrapolation.
 Where even a hundredth of the release does, the solid snaps, and `flow` leads to the next
 equilibrium. An equilibrium that is not stable is left along its softest mode.
+
+A guide tells displacements near those of some states (see `guide`). The step to such a state begins
+from them, and from the distance to them so far. If that does not end nearby in a stable state, the
+step is done again without a guide.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +25,11 @@ Array = NDArray[np.float64]
 SHORT = 0.25  # of an increment, its first part where there is no past to extrapolate
 SNAP_STEP = 0.01  # of the release: to this a snap is located
 FAR = 0.03  # of the solid's size: an equilibrium so far from its extrapolation is another branch
+ASTRAY = (
+    0.01  # of the size: an equilibrium so far from where a guide leads is not what it leads to;
+)
+# under gravity alone, where heavy slender grids of two meshes hang 2 % apart, it is `FAR`
+GUIDED_ITERATIONS = 6  # at most, before a step is done without its guide
 
 
 class Path:
@@ -29,19 +38,27 @@ class Path:
     Args:
         problem: the equilibrium problem.
         states: to begin with; by default the flat solid.
+        guide: (N, 3) mm, displacements near those at pairs of released fraction and gravity.
 
     Attributes:
         last: up to three states on the same smooth path.
         halved: increments that had to be halved.
+        guided: increments that the guide led.
         snaps: sudden motions, in their order.
         motions: how far some part moved in each of them, mm.
         messages: what qualifies the states.
     """
 
-    def __init__(self, problem: EquilibriumProblem, states: Sequence[SolidState] = ()) -> None:
+    def __init__(
+        self,
+        problem: EquilibriumProblem,
+        states: Sequence[SolidState] = (),
+        guide: Mapping[tuple[float, float], Array] | None = None,
+    ) -> None:
         self.problem = problem
+        self.guide = guide or {}
         self.last = list(states) or [problem.flat()]
-        self.halved = 0
+        self.halved = self.guided = 0
         self.snaps: list[Snap] = []
         self.motions: list[float] = []
         self.messages: list[Message] = []
@@ -62,6 +79,10 @@ class Path:
             ComputationError: no equilibrium was reached.
             CancelledError: the problem's token said so.
         """
+        if state := self._guided(released, gravity):
+            self.guided += 1
+            self.last = [*self.last, state][-3:]
+            return state
         goal = np.array([released, gravity])
         begin = np.array([self.last[-1].released, self.last[-1].gravity])
         release = released != self.last[-1].released
@@ -91,6 +112,26 @@ class Path:
             step = SHORT * (1 - to) if len(self.last) == 1 and release else 2 * (to - done)
             done = to
         return self.last[-1]
+
+    def _guided(self, s: float, g: float) -> SolidState | None:
+        """Return the stable equilibrium to which the guide leads, None where it leads to none."""
+        near = self.guide.get((s, g))
+        last = [state for state in self.last if (state.released, state.gravity) in self.guide]
+        if near is None or self.messages or not last or last[-1] is not self.last[-1]:
+            return None
+        # Distances to the guide are rougher than states, so that only two are extrapolated. The
+        # carried stress knows nothing of the guide's, which would take more iterations.
+        u = near.copy()
+        for weight, state in zip(lagrange(last[-2:], s, g), last[-2:], strict=True):
+            u += weight * (state.u - self.guide[state.released, state.gravity])
+        u[self.problem.solid.fixed] = 0.0  # whatever a coarser mesh holds
+        guess = SolidState(s, g, u, extrapolated(self.last, s, g).carried)
+        try:
+            state = self.problem.equilibrium(guess, most=GUIDED_ITERATIONS)
+        except NotConvergedError:
+            return None
+        most = (ASTRAY if s else FAR) * self.problem.size
+        return None if abs(state.u - u).max() > most or state.crossed or state.negative else state
 
     def _near(self, guess: SolidState) -> SolidState | None:
         """Return the equilibrium near an extrapolation, None where there is none."""
@@ -147,14 +188,18 @@ class Path:
 
 def extrapolated(last: Sequence[SolidState], s: float, g: float) -> SolidState:
     """Return displacements and carried stress through up to three states (Lagrange)."""
-    at, goal = [state.released + state.gravity for state in last], s + g
-    weights = [
-        float(np.prod([(goal - b) / (a - b) for j, b in enumerate(at) if j != i]))
-        for i, a in enumerate(at)
-    ]
     u = np.zeros_like(last[0].u)
     carried = np.zeros_like(last[0].carried)
-    for weight, state in zip(weights, last, strict=True):
+    for weight, state in zip(lagrange(last, s, g), last, strict=True):
         u += weight * state.u
         carried += weight * state.carried
     return SolidState(s, g, u, carried)
+
+
+def lagrange(last: Sequence[SolidState], s: float, g: float) -> list[float]:
+    """Return the weights of states in the polynomial through them, at another load."""
+    at, goal = [state.released + state.gravity for state in last], s + g
+    return [
+        float(np.prod([(goal - b) / (a - b) for j, b in enumerate(at) if j != i]))
+        for i, a in enumerate(at)
+    ]

@@ -15,16 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import Cancel, ComputationError, Message
+from simulearn.fea.frames import UNDER_GRAVITY, march
+from simulearn.fea.guide import guide_of
 from simulearn.fea.kernels import entries
 from simulearn.fea.laws import law_of
-from simulearn.fea.mesh import COARSE, Layout, mesh
+from simulearn.fea.layout import COARSE, Layout
+from simulearn.fea.mesh import mesh
 from simulearn.fea.path import Path
 from simulearn.fea.problem import Control, EquilibriumProblem, SolidState
 from simulearn.fea.solid import Solid
 from simulearn.fea.stress import cauchy_stress, sample_points, sampled_stress
 from simulearn.grid import Grid
 from simulearn.material import Material
-from simulearn.schedule import FRAMES, SCHEDULE, Snap
+from simulearn.schedule import FRAMES, Snap
 
 Array = NDArray[np.float64]
 
@@ -40,7 +43,8 @@ class Trial:
         beams: (F, B, 3, 4, 3) corners of the beams' sections at start, middle and end.
         stress: (F, B, 4, 4, 6) components 11 22 33 12 13 23 in global axes.
         seconds: time it took.
-        record: law, iterations a frame, halved increments, motions of snaps, size.
+        record: law, iterations a frame, halved increments, motions of snaps, size; on a mesh finer
+            than the default also the `guide` (see `Guide.record`) and the steps that it led.
         solid: the solid.
         displacements: (F, N, 3) of its nodes.
         stable: whether all frames are stable equilibria, as far as the solver can tell.
@@ -97,14 +101,14 @@ def simulate_grid(
     cancel: Cancel | None = None,
     factors: Array | None = None,
 ) -> Trial:
-    """Simulate a grid in its bath.
+    """Simulate a grid in its bath; on a mesh finer than the default one with that one as a guide.
 
     Args:
         grid: a valid grid.
         material: its material system.
         layout: of the mesh.
         control: convergence settings.
-        progress: called with (frames done, frames in all) after each frame.
+        progress: called with (frames done, frames in all) after each frame; those of a guide count.
         cancel: token that stops the simulation within an iteration.
         factors: (B,) by which the released strains of beams differ from the material's.
 
@@ -114,33 +118,24 @@ def simulate_grid(
         CancelledError: the token said so.
     """
     begun = time.perf_counter()
+    solid = mesh(grid, material, layout, factors)
+    report = _Report(progress, layout.finer(COARSE))
+    guide = None
+    if layout.finer(COARSE):
+        guide = guide_of(grid, material, layout, solid, factors, control, report.coarse, cancel)
     problem = EquilibriumProblem(
-        mesh(grid, material, layout, factors),
-        law_of(material.law),
-        material.gravity.body_force,
-        control=control,
-        cancel=cancel,
+        solid, law_of(material.law), material.gravity.body_force, control=control, cancel=cancel
     )
-    gravity = SCHEDULE.gravity(material.creep.amplitude)
-    path = Path(problem)
+    path = Path(problem, guide=guide.displacements if guide else {})
     frames: list[SolidState] = []
     spent: list[int] = []
-
-    def save(state: SolidState) -> None:
-        frames.append(state)
-        spent.append(problem.iterations - sum(spent))
-        if progress:
-            progress(len(frames), FRAMES)
-
-    save(path.last[-1])
     try:
-        # Gravity first: bringing both up at once takes more iterations, and fails more often.
-        path.advance(0.0, gravity[1], 1)
-        path.restart()
-        for frame in range(1, FRAMES - 1):
-            save(path.advance(SCHEDULE.released[frame], gravity[frame], frame))
-        path.restart()
-        save(path.advance(SCHEDULE.released[-1], gravity[-1], FRAMES - 1))
+        for place, state in enumerate(march(path, material.creep.amplitude)):
+            if place == UNDER_GRAVITY:
+                continue  # its iterations count for the first frame
+            frames.append(state)
+            spent.append(problem.iterations - sum(spent))
+            report.frame()
     except ComputationError as error:
         where = f"frame {len(frames)}"
         raise ComputationError(
@@ -154,6 +149,8 @@ def simulate_grid(
         "iterations": spent,
         "corrections": problem.corrections,
         "halved": path.halved,
+        **({"guide": guide.record | {"steps": path.guided}} if guide else {}),
+        "mesh": layout.name,
         "stable": stable,
         "snaps": [
             {"released": snap.released, "frame": snap.frame, "motion_mm": motion}
@@ -175,6 +172,32 @@ def simulate_grid(
         path.snaps,
         path.messages,
     )
+
+
+class _Report:
+    """Reports the frames of a trial, and before it those of its guide.
+
+    Args:
+        progress: is told.
+        guided: whether there is a guide.
+    """
+
+    def __init__(self, progress: Progress | None, guided: bool) -> None:
+        self._progress = progress
+        self._done, self._before = 0, FRAMES if guided else 0
+
+    def coarse(self) -> None:
+        """Report a frame of the guide."""
+        self._say(self._done + 1)
+
+    def frame(self) -> None:
+        """Report a frame; a guide that ended early counts as complete."""
+        self._say(max(self._done, self._before) + 1)
+
+    def _say(self, done: int) -> None:
+        self._done = done
+        if self._progress:
+            self._progress(done, self._before + FRAMES)
 
 
 def _stress(problem: EquilibriumProblem, state: SolidState, softening: float) -> Array:

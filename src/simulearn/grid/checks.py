@@ -40,10 +40,23 @@ class TrainingRange:
     Attributes:
         dimension: largest distance from the fixed joint to another joint.
         beam_length: length of a beam between the centres of its joints.
+        thickness: of the section that these lengths belong to, in which they count.
     """
 
     dimension: tuple[float, float]
     beam_length: tuple[float, float]
+    thickness: float = 4.0
+
+    def of(self, material: Material) -> "TrainingRange":
+        """Return the lengths for the section of a material."""
+        ratio = material.section.thickness / self.thickness
+        if ratio == 1:
+            return self
+        low, high = self.dimension
+        short, long = self.beam_length
+        return TrainingRange(
+            (ratio * low, ratio * high), (ratio * short, ratio * long), material.section.thickness
+        )
 
 
 @dataclass(frozen=True)

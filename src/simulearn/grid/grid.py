@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from simulearn.display import Displayed
 from simulearn.errors import InputError
 from simulearn.grid.arrays import KEYS, index, indices, numbers, places, shown
+from simulearn.material.material import Material
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Grid(Displayed):
         actuators: (B,) signed ratio in [-1, 1] of actuator length to the beam's net length;
             + puts the active part on the top half, - on the bottom half.
         fixed: index of the joint whose lower half is held.
-        material: name of the material system, or the path of its TOML file.
+        material: name of the material system, the path of its TOML file, or the material itself.
 
     Raises:
         InputError: an array has another shape or holds what is not a finite number; joints are not
@@ -55,7 +56,7 @@ class Grid(Displayed):
     beams: NDArray[np.int64]
     actuators: NDArray[np.float64]
     fixed: int
-    material: str = "pla-hot-water"
+    material: str | Material = "pla-hot-water"
 
     def __init__(
         self,
@@ -63,9 +64,9 @@ class Grid(Displayed):
         beams: ArrayLike,
         actuators: ArrayLike,
         fixed: int,
-        material: str | os.PathLike[str] = "pla-hot-water",
+        material: str | os.PathLike[str] | Material = "pla-hot-water",
     ) -> None:
-        if not isinstance(material, (str, os.PathLike)) or not str(material):
+        if not isinstance(material, (str, os.PathLike, Material)) or not str(material):
             text = f"material is {shown(material)}; {KEYS['material']}"
             raise InputError(text, "material", "material")
         own = self.__dict__  # the class is frozen
@@ -73,7 +74,7 @@ class Grid(Displayed):
         own["beams"] = indices(beams, "beams")
         own["actuators"] = numbers(actuators, "actuators")
         own["fixed"] = index(fixed, "fixed")
-        own["material"] = str(material)
+        own["material"] = material if isinstance(material, Material) else str(material)
         for array in (self.joints, self.beams, self.actuators):
             array.flags.writeable = False
 
@@ -101,9 +102,12 @@ class Grid(Displayed):
     def digest(self) -> str:
         """SHA-256 of all that the grid holds, in hexadecimal digits.
 
-        The material counts by its name; `Material.digest` is that of its contents.
+        A material counts by its name; one that the grid holds itself by its contents, too.
         """
-        text = f"simulearn.grid/1 {len(self.joints)} {len(self.beams)} {self.fixed} {self.material}"
+        material = self.material
+        if isinstance(material, Material):
+            material = f"{material.name} {material.digest}"
+        text = f"simulearn.grid/1 {len(self.joints)} {len(self.beams)} {self.fixed} {material}"
         digest = hashlib.sha256(text.encode("utf-8", "surrogatepass"))
         # Adding 0.0 makes 0.0 of -0.0.
         digest.update((self.joints + 0.0).astype("<f8").tobytes())

@@ -1,6 +1,7 @@
 """The grid file: JSON with the keys schema, joints, beams, actuators, fixed and material."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,7 +13,7 @@ from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
 from simulearn.grid.arrays import shown, whole
 from simulearn.grid.grid import Grid
 from simulearn.grid.structure import structure_errors
-from simulearn.material.material import is_name
+from simulearn.material.material import Material, is_name, name_of
 
 SCHEMA = "simulearn.grid/1"
 MOST_BYTES = 2**24  # several times the largest grid that can be computed
@@ -91,13 +92,16 @@ def write_grid(grid: Grid, path: Path | str) -> None:
         temporary.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
 
 
-def grid_from_dict(data: Any, *, paths: bool = False) -> Grid:
+def grid_from_dict(
+    data: Any, *, paths: bool = False, materials: Mapping[str, Material] | None = None
+) -> Grid:
     """Return the grid that a dict with the file's keys describes.
 
     Args:
         data: such as JSON gives.
         paths: whether its material may be the path of a file. From a source that is not trusted
             only names are safe: a path makes the program open what it names.
+        materials: those that its material may name besides the ones that come along.
 
     Raises:
         InputError: a key, type, length, index or number is wrong; one line says which.
@@ -112,21 +116,22 @@ def grid_from_dict(data: Any, *, paths: bool = False) -> Grid:
     if not (paths or is_name(file.material)):
         text = f"material is a path; {shown(file.material)} is not the name of a material system"
         raise InputError(text, "material-path", "material")
-    grid = Grid(file.joints, file.beams, file.actuators, file.fixed, file.material)
+    material = (materials or {}).get(file.material, file.material)
+    grid = Grid(file.joints, file.beams, file.actuators, file.fixed, material)
     for wrong in structure_errors(grid):
         raise InputError(wrong.message, wrong.code, wrong.where)
     return grid
 
 
 def grid_to_dict(grid: Grid) -> dict[str, Any]:
-    """Return a grid as plain lists and numbers under the file's keys."""
+    """Return a grid as plain lists and numbers under the file's keys, its material by its name."""
     return {
         "schema": SCHEMA,
         "joints": grid.joints.tolist(),
         "beams": grid.beams.tolist(),
         "actuators": grid.actuators.tolist(),
         "fixed": grid.fixed,
-        "material": grid.material,
+        "material": name_of(grid.material),
     }
 
 

@@ -1,4 +1,4 @@
-"""Random designs of many kinds of grids, for any section: what a model learns from and is tested on.
+"""Random designs of many kinds of grids, in any material, to learn from and to test on.
 
 A design begins with a plain net (see `nets`), which is sized, its joints moved about, and given
 actuators. A draw depends on the seed and its number only.
@@ -75,9 +75,8 @@ def draw_kind(kinds: Kinds, rules: Rules, base: Material, seed: int, k: int) -> 
     # Kind and material stay when a design is redrawn, so that none is drawn more seldom.
     uniform = source(seed, k, MOST_REDRAWS + 1)
     material = draw_member(kinds.family, base, uniform)
-    names = list(kinds.shares)
-    at = np.searchsorted(np.cumsum(list(kinds.shares.values())), uniform() * sum(kinds.shares.values()))
-    kind = names[min(int(at), len(names) - 1)]
+    names, shares = list(kinds.shares), np.cumsum(list(kinds.shares.values()))
+    kind = names[min(int(np.searchsorted(shares, uniform() * shares[-1])), len(names) - 1)]
     for redraw in range(MOST_REDRAWS + 1):
         grid = _draw(kind, kinds, rules, material, source(seed, k, redraw))
         if grid is not None:

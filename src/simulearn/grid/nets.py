@@ -36,7 +36,7 @@ def chain(uniform: Uniform) -> Net:
     count, turn = _among(uniform, 1, 4), (uniform() - 0.5) * 1.6
     at, angle, joints = np.zeros(2), 0.0, [np.zeros(2)]
     for k in range(count):
-        at = at + [cos(angle), sin(angle)]
+        at = at + np.array([cos(angle), sin(angle)])
         joints.append(at)
         angle += turn * (-1) ** k if uniform() < 0.5 else turn
     return Net(np.array(joints), [(k, k + 1) for k in range(count)])
@@ -142,7 +142,8 @@ def _cells_of(places: list[tuple[float, float]], sides: int, turn: float, radius
 def _merged(segments: NDArray[np.float64]) -> Net:
     """Return the net of segments (N, 2, 2), points in the same place being one joint."""
     keys: dict[tuple[float, float], int] = {}
-    joints, beams = [], []
+    joints: list[NDArray[np.float64]] = []
+    beams: list[tuple[int, int]] = []
     for segment in segments:
         ends = []
         for point in segment:

@@ -24,6 +24,7 @@ from simulearn.simulate.resultfile import failure_to_dict
 MAGIC = b"SLF1"
 SCHEMA = "simulearn.frames/1"
 DIGITS = 3  # of lengths, mm
+PRINTS = 60  # of a spread that are drawn: more hide one another
 MEDIA_TYPE = "application/vnd.simulearn.frames"
 IN_RESPONSES: dict[int | str, dict[str, Any]] = {  # for the description of a route
     200: {"content": {MEDIA_TYPE: {"schema": {"type": "string", "format": "binary"}}}}
@@ -47,6 +48,8 @@ def to_bytes(grids: Sequence[Grid], outcomes: Sequence[Outcome]) -> bytes:
         parts = {"joints": outcome.joints, "beams": outcome.beams}
         if outcome.stress is not None:
             parts["mises"] = mises(outcome.stress)
+        if outcome.scatter is not None and outcome.scatter.lines is not None:
+            parts["prints"] = outcome.scatter.lines[:PRINTS]
         entry["arrays"] = {}
         for name, values in parts.items():
             entry["arrays"][name] = {"start": start, "shape": list(values.shape)}

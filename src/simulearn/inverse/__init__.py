@@ -3,10 +3,11 @@
 from simulearn.inverse.changes import Change, changes
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.figures import search_figures
+from simulearn.inverse.found import SearchResult
 from simulearn.inverse.goals import Goals, Vertex
 from simulearn.inverse.keeping import Past, Step
 from simulearn.inverse.ranking import Ranking, Suggestion, rank
-from simulearn.inverse.search import METHODS, SearchResult, optimize
+from simulearn.inverse.search import METHODS, optimize
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import (
     Task,

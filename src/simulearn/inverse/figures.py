@@ -3,7 +3,7 @@
 from dataclasses import asdict
 from typing import Any
 
-from simulearn.inverse.search import SearchResult
+from simulearn.inverse.found import SearchResult
 from simulearn.inverse.task import Task
 
 
@@ -22,16 +22,23 @@ def search_figures(task: Task, result: SearchResult) -> dict[str, Any]:
         "start_mm": result.steps[0].error_mm,
         "designs": result.designs,
         "iterations": result.iterations,
-        "corrections": result.steps[-1].phase,
+        "corrections": max(step.phase for step in result.steps),
         "seconds": round(result.seconds, 3),
         "interrupted": result.interrupted,
         "warnings": [asdict(message) for message in result.warnings],
+        **_of_prints(result),
         "goals": [
             {"vertex": vertex, "distance_mm": distance}
             for vertex, distance in _distances(task, result)
         ],
         "history": [step.row() for step in result.steps],
     }
+
+
+def _of_prints(result: SearchResult) -> dict[str, Any]:
+    """Return how often prints meet the goals, where the task asks for it."""
+    parts = {"probability": result.probability, "nominal_probability": result.nominal}
+    return {name: part.to_dict() for name, part in parts.items() if part is not None}
 
 
 def _distances(task: Task, result: SearchResult) -> list[tuple[str, float]]:

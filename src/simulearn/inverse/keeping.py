@@ -17,6 +17,7 @@ from simulearn.inverse.task import Task, task_to_dict
 
 SCHEMA = "simulearn.search/1"
 COLUMNS = ("iteration", "phase", "seconds", "designs", "error_mm", "words")
+ROBUST = -1  # the phase of a robust search in which prints are looked at
 FIGURES = ("error_mm", "error_fea_mm", "why", "apart_mm", "bound_mm", "phase")  # of a check
 
 
@@ -26,10 +27,11 @@ class Step:
 
     Attributes:
         iteration: from 1; 0 is the design to begin with.
-        phase: 0 searching, 1 and more after so many corrections by finite elements.
+        phase: 0 searching, 1 and more after so many corrections by finite elements; ROBUST.
         seconds: of searching and checking, all runs together.
         designs: scored so far.
-        error_mm: of the best so far, by the engine, against the targets of the phase.
+        error_mm: of the best so far, by the engine, against the targets of the phase; expected of
+            prints where the phase is ROBUST.
         words: what was done.
         joints, actuators: of the best so far.
     """

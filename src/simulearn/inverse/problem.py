@@ -141,6 +141,23 @@ class Problem:
             raise OutOfTime
 
 
+@dataclass(frozen=True)
+class Until:
+    """A token that is set when the time is over, or when another one is.
+
+    Attributes:
+        cancel: the other one.
+        deadline: by `time.monotonic`.
+    """
+
+    cancel: Cancel | None
+    deadline: float
+
+    def is_set(self) -> bool:
+        """Return whether it is."""
+        return monotonic() > self.deadline or (self.cancel is not None and self.cancel.is_set())
+
+
 def drawing(seed: int) -> np.random.Generator:
     """Return a source of random numbers that are the same on every machine."""
     return np.random.Generator(np.random.Philox(seed))

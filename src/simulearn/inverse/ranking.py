@@ -5,21 +5,23 @@ the goals' vertices nearly alike.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.display import Displayed
-from simulearn.errors import Cancel, ComputationError
+from simulearn.errors import Cancel, ComputationError, Message
 from simulearn.grid import Grid
 from simulearn.inverse.changes import Change, changes
 from simulearn.inverse.goals import Goals
+from simulearn.inverse.prints import without_scatter
+from simulearn.inverse.probability import Probability, probability
 from simulearn.inverse.problem import Problem
 from simulearn.inverse.scoring import places
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Free, Task
-from simulearn.simulate import Simulator
+from simulearn.simulate import Progress, Simulator
 from simulearn.simulate import engine as engine_of
 
 Array = NDArray[np.float64]
@@ -38,6 +40,8 @@ class Suggestion:
         error_mm: predicted.
         points: (G, 3) mm, where the goals' vertices come to.
         moved_mm: mean distance by which it moves them.
+        probability: how often prints of it meet the goals; of the best five of a task that has
+            tolerances.
     """
 
     change: Change
@@ -45,6 +49,7 @@ class Suggestion:
     error_mm: float
     points: Array
     moved_mm: float
+    probability: Probability | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +62,8 @@ class Ranking(Displayed):
         points: (G, 3) mm, where its vertices come to.
         suggestions: all of them.
         best: five that differ.
+        probability: how often prints of the design as it is meet the goals.
+        warnings: about the goals.
     """
 
     grid: Grid
@@ -64,6 +71,8 @@ class Ranking(Displayed):
     points: Array
     suggestions: tuple[Suggestion, ...]
     best: tuple[Suggestion, ...]
+    probability: Probability | None = None
+    warnings: tuple[Message, ...] = ()
 
 
 def rank(
@@ -72,6 +81,7 @@ def rank(
     model: str | None = None,
     free: Free | None = None,
     cancel: Cancel | None = None,
+    progress: Progress | None = None,
 ) -> Ranking:
     """Return the modifications of a design, the best first.
 
@@ -85,6 +95,7 @@ def rank(
         model: for the engine `learned`; its default if not given.
         free: what of a grid may change; a task says so itself.
         cancel: stops the ranking between designs.
+        progress: called with the prints done and the prints in all, where there are tolerances.
 
     Raises:
         InputError: the grid is not valid, or nothing may change.
@@ -95,7 +106,8 @@ def rank(
     if isinstance(simulator, str):
         simulator = engine_of(simulator, model)
     if isinstance(design, Task):
-        return _ranked(design.start, design.aims, design.free, simulator, cancel)
+        ranking = _ranked(design.start, design.aims, design.free, simulator, cancel)
+        return _with_probabilities(ranking, design, simulator, cancel, progress)
     return _ranked(design, None, free or Free(), simulator, cancel)
 
 
@@ -141,6 +153,41 @@ def _ranked(
     )
     best = different(suggestions, points[0])
     return Ranking(space.grid, float(errors[0]), points[0], suggestions, best)
+
+
+def _with_probabilities(
+    ranking: Ranking,
+    task: Task,
+    engine: Simulator,
+    cancel: Cancel | None,
+    progress: Progress | None,
+) -> Ranking:
+    """Return a ranking of a task with tolerances that says how often prints are within them."""
+    goals, wanted = task.aims, task.tolerances
+    if all(one is None for one in wanted):
+        return ranking
+    if warnings := without_scatter(task, ranking.grid):
+        return replace(ranking, warnings=tuple(warnings))
+    designs = [(ranking.grid, ranking.points), *((one.grid, one.points) for one in ranking.best)]
+    found: list[Probability | None] = []
+    for grid, points in designs:
+        done = len(found)
+
+        def part(now: int, of: int, done: int = done) -> None:
+            if progress is not None:
+                progress(done * of + now, len(designs) * of)
+
+        try:
+            found.append(
+                probability(
+                    grid, goals, wanted, points, engine=engine, progress=part, cancel=cancel
+                )
+            )
+        except ComputationError:  # the table shows that there is none
+            found.append(None)
+    own, *others = found
+    best = [replace(one, probability=p) for one, p in zip(ranking.best, others, strict=True)]
+    return replace(ranking, best=tuple(best), probability=own)
 
 
 def different(

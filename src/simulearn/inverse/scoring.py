@@ -5,7 +5,6 @@ design that an engine has no answer for has no place, and a search does without 
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,11 +34,11 @@ def places(engine: Simulator, goals: Goals, cancel: Cancel | None = None) -> Pla
 
 
 def _together(engine: Learned, goals: Goals) -> Places:
-    card, model = engine.bundle.card, engine.bundle.model
+    model = engine.bundle.model
 
     def together(designs: Designs) -> Array:
         engine.require(designs.material)
-        last = last_frame(model, replace(designs, material=card.material))
+        last = last_frame(model, designs)
         points = goals.points(last.joints, last.sections)
         answered = last.converged & np.isfinite(points).all(axis=(1, 2))
         return np.where(answered[:, None, None], points, np.nan)

@@ -4,27 +4,30 @@ One time limit covers getting ready, searching and checking. A search uses part
 of its time; then its best design is checked by finite elements. Where they differ, the targets are
 moved by the difference and the search goes on from there, as often as the limits allow. A search
 that found a design returns it, whatever a check, an interrupt or a token does afterwards.
+
+Of a robust search this is the first half: the second goes on from its best design with a few prints
+of each design, and the better of both by the probability that a print meets the goals is returned.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from importlib import import_module
 from time import monotonic
 
 import numpy as np
 
-from simulearn.display import Displayed
-from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message
+from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, stop_if
 from simulearn.extras import require
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check, check
+from simulearn.inverse.found import SearchResult
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.keeping import Past, Step
-from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, drawing
+from simulearn.inverse.keeping import ROBUST, Past, Step
+from simulearn.inverse.prints import regard_prints, without_scatter
+from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, Until, drawing
 from simulearn.inverse.reach import not_near, out_of_reach
 from simulearn.inverse.scoring import places
 from simulearn.inverse.space import Space
-from simulearn.inverse.task import Task
+from simulearn.inverse.task import Limits, Task
 from simulearn.simulate import Simulator
 from simulearn.simulate import engine as engine_of
 from simulearn.simulate.calls import warm
@@ -39,47 +42,13 @@ METHODS = {  # name -> module, function
 Method = Callable[[Problem, Scored], Iterator[Advance]]
 Progress = Callable[[Step], None]  # called with each step, as soon as it is done
 
+NOMINAL = 0.5  # of the limits of a robust search, before prints are looked at
 GOOD = 0.1  # mm, about the engine's own error; a search that came so far has done its work
 SEARCHING = 0.75  # of the time left goes into a search that corrections may follow
 WORTH = 0.1  # of the error, that a correction must promise
 GRACE = 10.0  # s beyond the deadline that the first check of a search may take, at most
 GRACE_SHARE = 0.25  # of the time, likewise
 CHECKING = 0.25  # s for each beam that a check takes, until one has been measured
-
-
-@dataclass(frozen=True, eq=False)
-class SearchResult(Displayed):
-    """The result of a search.
-
-    Attributes:
-        check: the best design, by the engine and by finite elements; None if no check was made.
-        grid: the best design.
-        error_mm: of it, by the engine that was used.
-        steps: the iterations, 0 being the beginning.
-        checks: by finite elements, those of earlier runs among them.
-        seconds: of searching and checking.
-        interrupted: whether it was stopped by the user.
-        warnings: about the goals.
-    """
-
-    check: Check | None
-    grid: Grid
-    error_mm: float
-    steps: tuple[Step, ...]
-    checks: tuple[Check, ...]
-    seconds: float
-    interrupted: bool
-    warnings: tuple[Message, ...] = ()
-
-    @property
-    def designs(self) -> int:
-        """How many designs were scored."""
-        return self.steps[-1].designs
-
-    @property
-    def iterations(self) -> int:
-        """Of the method."""
-        return self.steps[-1].iteration
 
 
 def method(name: str) -> Method:
@@ -150,32 +119,37 @@ class Search:
         before: Past,
     ) -> None:
         self.task, self.engine, self.cancel = task, engine, cancel
+        self.limits = _nominal(task)
         self.method = method(task.method)
         self.steps, self.checks = list(before.steps), list(before.checks)
         self._progress = progress
         self._asked, self._begun = monotonic(), np.inf
-        self._checking = CHECKING * len(task.grid["beams"])
+        self.checking = CHECKING * len(task.grid["beams"])
 
     def run(self) -> SearchResult:
-        """Search, check and correct within the limits."""
+        """Search, check and correct within the limits; then regard prints, if the task asks."""
         goals, start = self.task.aims, self.task.start
-        warnings = out_of_reach(start, goals)
+        unknown = without_scatter(self.task, start)
+        warnings = [*out_of_reach(start, goals), *unknown]
         space = Space.of(start, self.task.free, getattr(self.engine, "training", None))
         now = self._started(space, goals)
         interrupted = False
+        best = of_prints = nominal = None
         try:
             phase, shift = self._resumed(goals)
             while True:
                 now = self._searched(space, goals.shifted(shift), now, phase)
-                latest = self._checked(space.grid_at(now.x, now.a), now, goals, phase)
+                latest = self.checked(space.grid_at(now.x, now.a), now, goals, phase)
                 if latest.shift is None or not self._worth_going_on(latest, phase):
                     break
                 phase, shift = phase + 1, latest.shift
+            best = self._best()
+            if best is not None and self.task.of_prints and not unknown:
+                best, of_prints, nominal, said = regard_prints(self, space, goals, best)
+                warnings += said
         except (KeyboardInterrupt, CancelledError):
             interrupted = True
-        best: Check | None = None
-        for one in self.checks:
-            best = one if one.better_than(best) else best
+        best = best or self._best()
         if best is not None and (not interrupted or best.error_fea_mm is not None):
             grid, error = best.grid, best.error_mm
         else:
@@ -189,6 +163,8 @@ class Search:
             self.seconds,
             interrupted,
             (*warnings, *([] if interrupted else not_near(start, error, warnings))),
+            of_prints,
+            nominal,
         )
 
     @property
@@ -198,8 +174,8 @@ class Search:
 
     def _started(self, space: Space, goals: Goals) -> Scored:
         """Return the design to begin with, and start the clock."""
-        problem = self._problem(space, goals, np.inf)
-        before = self.steps[-1] if self.steps else None
+        problem = self.problem(space, goals, np.inf)
+        before = self._nominal_step() if self.steps else None
         x, a = space.start if before is None else space.point(before.grid(space.grid))
         start = problem.scored(x, a)
         if not np.isfinite(start.error):
@@ -211,29 +187,30 @@ class Search:
         # All kernels are compiled before the clock runs, those of the checks, too.
         warm("fea")
         if isinstance(self.engine, Learned):
-            next(self.method(self._problem(space, goals, np.inf), start), None)
+            next(self.method(self.problem(space, goals, np.inf), start), None)
         # Reading the model and getting ready count, but the first time on a machine, which takes
         # longer than many searches, no more than half of the time.
         ready = min(monotonic() - self._asked, self.task.limits.seconds / 2)
-        self._begun = monotonic() - ready - (before.seconds if before else 0.0)
+        self._begun = monotonic() - ready - (self.steps[-1].seconds if before else 0.0)
         if before is None:
-            self._note(space, start, 0, 1, 0, "the design to begin with")
+            self.note(space, start, 0, 1, 0, "the design to begin with")
         return start
 
     def _resumed(self, goals: Goals) -> tuple[int, np.ndarray]:
         """Return the phase to go on with, and by how much its targets are moved (G, 3) mm."""
-        phase = self.steps[-1].phase
+        phase = self._nominal_step().phase
         for one in reversed(self.checks):
             if one.phase == phase - 1 and one.shift is not None:
                 return phase, one.shift
         return 0, np.zeros_like(goals.targets)
 
-    def _problem(self, space: Space, goals: Goals, until: float) -> Problem:
+    def problem(self, space: Space, goals: Goals, until: float) -> Problem:
+        """Return the problem to come to goals by the engine, until a time."""
         model = self.engine.bundle.model if isinstance(self.engine, Learned) else None
         return Problem(
             space,
             goals,
-            places(self.engine, goals, _Until(self.cancel, until)),
+            places(self.engine, goals, Until(self.cancel, until)),
             model=model,
             source=drawing(len(self.steps)),  # other numbers in each phase and after each stop
             until=until,
@@ -242,49 +219,57 @@ class Search:
 
     def _searched(self, space: Space, goals: Goals, start: Scored, phase: int) -> Scored:
         """Return the best design of a phase, by the engine."""
-        limits = self.task.limits
+        limits = self.limits
         left = limits.seconds - self.seconds
         share = SEARCHING if phase < limits.corrections else 1.0
-        room = min(self._checking, left / 2)
-        problem = self._problem(space, goals, monotonic() + share * (left - room))
+        room = min(self.checking, left / 2)
+        problem = self.problem(space, goals, monotonic() + share * (left - room))
         done = self.steps[-1].iteration
         most = done + max(1, round(share * (limits.iterations - done)))
-        before = self.steps[-1].designs
         # Targets may have moved since it was scored.
         error = float(problem.error(start.points[None])[0])
         start = problem.best = Scored(start.x, start.a, start.points, error)
+        if start.error > GOOD and done < limits.iterations:
+            return self.descended(problem, self.method, start, most, phase)
+        return start
+
+    def descended(
+        self, problem: Problem, method: Method, start: Scored, most: int, phase: int
+    ) -> Scored:
+        """Return the best design that a method comes to from a start within the limits."""
+        before, space = self.steps[-1].designs, problem.space
+        problem.best = start
         try:
-            if start.error > GOOD and done < limits.iterations:
-                for advance in self.method(problem, start):
-                    now = problem.best
-                    count = self.steps[-1].iteration + advance.complete
-                    self._note(space, now, count, before + problem.designs, phase, advance.words)
-                    if count >= most or now.error < GOOD:
-                        break
-                    problem.going()
+            for advance in method(problem, start):
+                now = problem.best
+                count = self.steps[-1].iteration + advance.complete
+                self.note(space, now, count, before + problem.designs, phase, advance.words)
+                if count >= most or now.error < GOOD:
+                    break
+                problem.going()
         except OutOfTime:
             pass
         except CancelledError:  # within a simulation; by the deadline, or by the user
-            if self.cancel is not None and self.cancel.is_set():
-                raise
+            stop_if(self.cancel)
         return problem.best
 
-    def _checked(self, grid: Grid, now: Scored, goals: Goals, phase: int) -> Check:
+    def checked(self, grid: Grid, now: Scored, goals: Goals, phase: int) -> Check:
         """Return the check of a design, perhaps one of an earlier run."""
         for one in self.checks:
             if one.error_fea_mm is not None and _same(one.grid, grid):
                 return one
         begun = monotonic()
         grace = 0.0 if self.checks else min(GRACE, GRACE_SHARE * self.task.limits.seconds)
-        until = _Until(self.cancel, self._begun + self.task.limits.seconds + grace)
+        until = Until(self.cancel, self._begun + self.task.limits.seconds + grace)
         latest = check(grid, now.points, goals, self.engine, self.cancel, until, phase)
-        self._checking = monotonic() - begun
+        self.checking = monotonic() - begun
         self.checks.append(latest)
         return latest
 
-    def _note(
+    def note(
         self, space: Space, now: Scored, iteration: int, designs: int, phase: int, words: str
     ) -> None:
+        """Add a step, and show it."""
         grid = space.grid_at(now.x, now.a)
         step = Step(
             iteration=iteration,
@@ -300,29 +285,39 @@ class Search:
         if self._progress is not None:
             self._progress(step)
 
+    def _nominal_step(self) -> Step:
+        """Return the last step before prints were looked at."""
+        return next(step for step in reversed(self.steps) if step.phase != ROBUST)
+
+    def _best(self) -> Check | None:
+        """Return the best check of a design that was found without regard to prints."""
+        best: Check | None = None
+        for one in self.checks:
+            if one.phase != ROBUST:
+                best = one if one.better_than(best) else best
+        return best
+
     def _worth_going_on(self, latest: Check, phase: int) -> bool:
         """Whether to go on from targets that finite elements have corrected."""
-        limits = self.task.limits
+        limits = self.limits
         if latest.error_fea_mm is None or latest.apart_mm is None:
             return False
         return (
             phase < limits.corrections
             and self.steps[-1].iteration < limits.iterations
-            and limits.seconds - self.seconds > 2 * self._checking
+            and limits.seconds - self.seconds > 2 * self.checking
             and latest.error_fea_mm > GOOD
             and latest.apart_mm > WORTH * latest.error_fea_mm
         )
 
 
-@dataclass(frozen=True)
-class _Until:
-    """A token that is set when the time is over, or when another one is."""
-
-    cancel: Cancel | None
-    deadline: float
-
-    def is_set(self) -> bool:
-        return monotonic() > self.deadline or (self.cancel is not None and self.cancel.is_set())
+def _nominal(task: Task) -> Limits:
+    """Return the limits of a search before prints are looked at."""
+    limits = task.limits
+    if not task.robust:
+        return limits
+    half = {"seconds": NOMINAL * limits.seconds, "iterations": -(-limits.iterations // 2)}
+    return limits.model_copy(update=half)
 
 
 def _same(one: Grid, other: Grid) -> bool:

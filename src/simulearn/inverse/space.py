@@ -93,6 +93,8 @@ class Space:
                 )
         if not (units or groups):
             raise InputError("free lets nothing change; name joints or actuators")
+        if training is not None:
+            training = training.of(material)
         if training is not None and outside(grid.joints[None], grid, training)[0]:
             training = None
         return cls(grid, motions, units, groups, free.move, free.ratio, training)

@@ -1,12 +1,21 @@
 """The task file: a grid, goals, what may change, and how to search; JSON, `simulearn.task/1`."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    model_serializer,
+)
 
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
@@ -14,6 +23,7 @@ from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import shown, whole
 from simulearn.grid.cleaning import removals
 from simulearn.inverse.goals import Goals, Vertex
+from simulearn.material import Material
 
 SCHEMA = "simulearn.task/1"
 
@@ -32,6 +42,15 @@ def _plain_vertex(words: Any) -> Any:
 class _Part(BaseModel):
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
 
+    @model_serializer(mode="wrap")
+    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Leave out what is not asked of prints, so that files without it stay as they were."""
+        return {
+            key: value
+            for key, value in write(self).items()
+            if (key, value) not in (("tolerance", None), ("robust", False))
+        }
+
 
 class Goal(_Part):
     """A vertex, the point where it is wanted, and how much it counts.
@@ -40,11 +59,13 @@ class Goal(_Part):
         vertex: ["joint", k, "centre"], ["joint", k, corner] or ["beam", b, section, corner].
         target: [x, y, z] mm, seen from the fixed joint.
         weight: not negative.
+        tolerance: distance from the target that a print may have, mm; None: that of the task.
     """
 
     vertex: Annotated[list[Any], BeforeValidator(_plain_vertex)]
     target: Annotated[list[float], Field(min_length=3, max_length=3)]
     weight: Annotated[float, Field(ge=0)] = 1.0
+    tolerance: Positive | None = None
 
 
 class Pairs(_Part):
@@ -106,6 +127,8 @@ class Task(_Part):
         method: one of `simulearn.inverse.METHODS`.
         engine: one of `simulearn.simulate.ENGINES`.
         limits: when to stop.
+        tolerance: of the goals that have none of their own, mm; None: they have none.
+        robust: whether a design is searched for whose prints come close, all in all.
     """
 
     schema_: Literal["simulearn.task/1"] = Field(alias="schema", default="simulearn.task/1")
@@ -115,34 +138,57 @@ class Task(_Part):
     method: str = "default"
     engine: str = "learned"
     limits: Limits = Limits()
+    tolerance: Positive | None = None
+    robust: bool = False
+    _material: Material | None = PrivateAttr(None)  # that the grid holds itself
 
     @property
     def start(self) -> Grid:
         """The design to begin with, its fixed joint at the origin."""
-        return grid_from_dict(self.grid, paths=True).centred
+        return self._design.centred
+
+    @property
+    def _design(self) -> Grid:
+        own = self._material
+        return grid_from_dict(self.grid, paths=True, materials=own and {own.name: own})
 
     @property
     def aims(self) -> Goals:
         """The goals as arrays."""
-        grid = grid_from_dict(self.grid, paths=True)
+        grid = self._design
         return Goals.of(
             [_vertex(goal.vertex, f"goals[{k}].vertex", grid) for k, goal in enumerate(self.goals)],
             np.array([goal.target for goal in self.goals]),
             np.array([goal.weight for goal in self.goals]),
         )
 
+    @property
+    def tolerances(self) -> tuple[float | None, ...]:
+        """The tolerance of each goal, mm."""
+        own = [goal.tolerance for goal in self.goals]
+        return tuple(self.tolerance if one is None else one for one in own)
+
+    @property
+    def of_prints(self) -> bool:
+        """Whether the task asks anything of prints, and not only of the design."""
+        return self.robust or any(one is not None for one in self.tolerances)
+
     def with_grid(self, grid: Grid) -> "Task":
         """Return the same task, beginning with another design."""
-        return self.model_copy(update={"grid": grid_to_dict(grid)})
+        task = self.model_copy(update={"grid": grid_to_dict(grid)})
+        task._material = _own(grid)
+        return task
 
 
 KEYS = {
     "schema": f'this program reads "{SCHEMA}"',
     "grid": "a grid is written as in a grid file",
-    "goals": "goals are a list of at least one object with vertex, target and weight",
+    "goals": "goals are a list of at least one object with vertex, target, weight and tolerance",
     "vertex": '["joint", k, "centre"], ["joint", k, corner] or ["beam", b, section, corner]',
     "target": "a target is [x, y, z], finite numbers in mm",
     "weight": "a weight is a number of at least 0",
+    "tolerance": "a tolerance is a length in mm, more than 0",
+    "robust": "robust is true or false",
     "free": "free is an object with joints, actuators, move, ratio and pairs",
     "joints": "joints are a list of indices counted from 0 (or of two of them, in pairs)",
     "actuators": "actuators are a list of beams counted from 0 (or of two of them, in pairs)",
@@ -206,12 +252,15 @@ def task_to_dict(task: Task) -> dict[str, Any]:
     return task.model_dump(by_alias=True)
 
 
-def task_from_dict(data: Any, *, paths: bool = False) -> Task:
+def task_from_dict(
+    data: Any, *, paths: bool = False, materials: Mapping[str, Material] | None = None
+) -> Task:
     """Return the task that a dict with the file's keys describes.
 
     Args:
         data: such as JSON gives.
         paths: whether the grid's material may be the path of a file; if not, it must be a name.
+        materials: those that the grid's material may name besides the ones that come along.
 
     Raises:
         InputError: a key, type, index or number is wrong; one line says which.
@@ -224,7 +273,7 @@ def task_from_dict(data: Any, *, paths: bool = False) -> Task:
         first = error.errors(include_url=False)[0]
         raise InputError(_line(first), "task", _place(first["loc"])) from error
     try:
-        grid = grid_from_dict(task.grid, paths=paths)
+        grid = grid_from_dict(task.grid, paths=paths, materials=materials)
     except InputError as error:
         raise InputError(f"grid: {error}", error.code, error.where or "grid") from error
     for removed in removals(grid):
@@ -234,7 +283,13 @@ def task_from_dict(data: Any, *, paths: bool = False) -> Task:
             removed.where,
         )
     _check(task, grid)
+    task._material = _own(grid)
     return task
+
+
+def _own(grid: Grid) -> Material | None:
+    """Return the material that a grid holds itself, None where it names one."""
+    return grid.material if isinstance(grid.material, Material) else None
 
 
 def _check(task: Task, grid: Grid) -> None:

@@ -9,9 +9,11 @@ from simulearn.material.material import (
     Scatter,
     Section,
     load_material,
+    name_of,
     names,
     read_material,
 )
+from simulearn.material.own import material_text, materials_of, own_material
 
 __all__ = [
     "ElasticData",
@@ -24,7 +26,11 @@ __all__ = [
     "Section",
     "draw_member",
     "load_material",
+    "material_text",
+    "materials_of",
     "member_of",
+    "name_of",
     "names",
+    "own_material",
     "read_material",
 ]

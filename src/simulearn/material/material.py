@@ -269,12 +269,22 @@ def is_name(text: str) -> bool:
     return not text.lower().endswith(".toml") and not set(text) & set("/\\:")
 
 
-def load_material(name: str | Path) -> Material:
+def name_of(material: str | Material) -> str:
+    """Return the name of what a grid is made of: a name or path, or the material itself."""
+    return material.name if isinstance(material, Material) else material
+
+
+def load_material(name: str | Path | Material) -> Material:
     """Return a material system by its name, or from a TOML file by its path.
+
+    Args:
+        name: name or path; a material itself is returned as it is.
 
     Raises:
         InputError: the name is unknown, or the file is not a valid material system.
     """
+    if isinstance(name, Material):
+        return name
     if not is_name(str(name)):
         return read_material(name)
     path = HERE / f"{name}.toml"

@@ -29,12 +29,13 @@ def local_corners(
     """
     plane, thick = in_s(section_model.plane, s), in_s(section_model.thickness, s)
     joints = geometry.corners * (1 + jnp.stack([plane, plane, thick]))
-    warped = jnp.einsum("hbij,hbcj->hbci", geometry.frame, face)
+    real = topology.real[:, None]  # what only fills up touches no corner
+    warped = jnp.einsum("hbij,hbcj->hbci", geometry.frame, face) * real[..., None]
     right, left = topology.side, (topology.side + 1) % 4
     corner = jnp.stack([right, left, 4 + right, 4 + left], -1)  # (2, B, 4)
     where = (topology.ends[..., None], corner)
     total = jnp.zeros_like(joints).at[where].add(warped)
-    count = jnp.zeros(joints.shape[:2]).at[where].add(1.0)
+    count = jnp.zeros(joints.shape[:2]).at[where].add(jnp.broadcast_to(real, corner.shape))
     joints += total / jnp.maximum(count, 1.0)[..., None]
     across, up = in_s(section_model.waist[0], s), in_s(section_model.waist[1], s)
     sections = geometry.section * (1 + jnp.stack([jnp.zeros_like(across), across, up]))

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.material import Material
 from simulearn.mechanics.kernels.assembly import Layout
 from simulearn.mechanics.kernels.geometry import Geometry, set_geometry
 from simulearn.mechanics.kernels.path import (
@@ -26,8 +25,9 @@ from simulearn.mechanics.kernels.path import (
     Frames,
     follow,
 )
-from simulearn.mechanics.model import SectionModel
+from simulearn.mechanics.model import SECTION_SHAPES, SectionModel
 from simulearn.mechanics.ordering import layout_of
+from simulearn.mechanics.properties import Properties
 from simulearn.schedule import SCHEDULE, Snap
 
 Numbers = NDArray[np.float64]
@@ -45,6 +45,7 @@ SMALLEST = 1 / 32  # of a frame, the smallest step
 ALLOWED = 1.0  # mm that a small step may move more than twice what the step before did
 SNAP = 0.03  # of the grid's dimension: the least motion that is a snap
 SHOVE = 0.1  # mm along the softest mode
+COEFFICIENTS = sum(int(np.prod(shape)) for shape in SECTION_SHAPES)  # of a section
 TURN = 3.0  # rad, by which a half-beam bends at most
 
 
@@ -56,7 +57,7 @@ class Grid(NamedTuple):
         geometry: the flat grid in numbers.
         side: (2, B) side of its joint that each half leaves.
         ratio: (B,) signed actuator ratios.
-        section: coefficients of the section model.
+        section: (B + 1, coefficients) of the beams, and of joints.
         load: body force N/mm3, section mm2, thickness mm.
     """
 
@@ -113,15 +114,20 @@ class Path:
 
 
 def coefficients(section_model: SectionModel) -> Numbers:
-    """Return the coefficients of a section model in one array, as the kernels take them."""
-    return np.concatenate([np.ravel(np.asarray(x, np.float64)) for x in section_model])
+    """Return the coefficients of a section model in one array, as the kernels take them.
+
+    One of many materials, whose axis is the last, gives (coefficients, T).
+    """
+    flat = [
+        np.reshape(np.asarray(x, np.float64), (int(np.prod(shape)), *np.shape(x)[len(shape) :]))
+        for x, shape in zip(section_model, SECTION_SHAPES, strict=True)
+    ]
+    return np.concatenate(flat)
 
 
-def load_of(material: Material) -> Numbers:
+def load_of(p: Properties) -> Numbers:
     """Return body force N/mm3, section mm2 and thickness mm."""
-    section = material.section
-    body = material.gravity.body_force
-    return np.array([body, section.width * section.thickness, section.thickness])
+    return np.array([p.body, p.width * p.thickness, p.thickness], np.float64)
 
 
 def grid_of(
@@ -131,7 +137,7 @@ def grid_of(
     ratio: Numbers,
     corners: tuple[Indices, ...],
     section: Numbers,
-    material: Material,
+    p: Properties,
 ) -> Grid:
     """Return a design as the kernels take it.
 
@@ -141,8 +147,8 @@ def grid_of(
         joints: (J, 2) mm.
         ratio: (B,) signed actuator ratios.
         corners: before, after, parts, part (J, 4) and side (2, B); see `grid.outline`.
-        section: see `coefficients`.
-        material: the material system.
+        section: (B + 1, coefficients), or (coefficients,) the same for all; see `coefficients`.
+        p: numbers of the material.
     """
     layout = layout_of(beams, fixed, len(joints))
     count, many = len(joints), len(beams)
@@ -154,25 +160,26 @@ def grid_of(
     own = [np.ascontiguousarray(x, np.int64) for x in corners]
     set_geometry(
         geometry, np.ascontiguousarray(joints, np.float64), layout.ends, *own,
-        material.section.width, material.section.thickness,
+        p.width, p.thickness,
     )  # fmt: skip
     ratio = np.ascontiguousarray(ratio, np.float64)
-    return Grid(layout, geometry, own[4], ratio, section, load_of(material))
+    rows = np.ascontiguousarray(np.broadcast_to(section, (many + 1, section.shape[-1])))
+    return Grid(layout, geometry, own[4], ratio, rows, load_of(p))
 
 
 def schedule_frames(
-    beams: int, material: Material, corrections: Numbers | None = None, which: Any = slice(None)
+    beams: int, creep: float, corrections: Numbers | None = None, which: Any = slice(None)
 ) -> Frames:
     """Return what acts in the frames of a simulation, or in some of them.
 
     Args:
         beams: how many there are.
-        material: for its creep.
+        creep: creep strain over elastic strain.
         corrections: (F, 2, B, 12) see `kernels.path.Frames`.
         which: index over the twelve frames, the flat one first.
     """
     released = np.array(SCHEDULE.released)[which]
-    gravity = np.array(SCHEDULE.gravity(material.creep.amplitude))[which]
+    gravity = np.array(SCHEDULE.gravity(creep))[which]
     count = len(released)
     order = np.clip(np.arange(count) - 2, 0, 2)
     order[-1] = 0

@@ -6,11 +6,11 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from simulearn.material import Material
 from simulearn.mechanics.equilibrium import solve_equilibrium
 from simulearn.mechanics.forces import BeamState, HalfBeams, each
 from simulearn.mechanics.model import SectionModel
 from simulearn.mechanics.poses import Array, Pose
+from simulearn.mechanics.properties import Properties
 from simulearn.mechanics.section import in_s, rest, tilted
 from simulearn.mechanics.stiffness import inverse_of_blocks
 from simulearn.mechanics.topology import FlatGeometry, Topology
@@ -35,15 +35,13 @@ class Loads(NamedTuple):
     gravity: Array
 
 
-def loads(material: Material) -> Loads:
-    """Return the loads of a material system; creep is gravity times 1 + phi."""
-    section = material.section
+def loads(p: Properties) -> Loads:
+    """Return the loads of a material; creep is gravity times 1 + phi."""
+    gravity = [jnp.asarray(g) + 0.0 * p.creep for g in SCHEDULE.gravity(p.creep)[1:]]
     return Loads(
-        jnp.array(material.gravity.body_force),
-        jnp.array(section.width * section.thickness),
-        jnp.array(section.thickness),
-        jnp.array(SCHEDULE.gravity(material.creep.amplitude)[1:]),
-    )
+        jnp.asarray(p.body), jnp.asarray(p.width * p.thickness), jnp.asarray(p.thickness),
+        jnp.stack(gravity),
+    )  # fmt: skip
 
 
 def half_beams_at(
@@ -60,7 +58,7 @@ def half_beams_at(
     free, compliance = rest(section_model, geometry.length, ratio, s)
     body = load.body * gravity
     return HalfBeams(
-        rest=tilted(section_model, held, s) @ free,
+        rest=tilted(section_model, held, geometry.reach, s) @ free,
         stiffness=jnp.stack([inverse_of_blocks(compliance)] * 2),
         face=geometry.face * (1 + in_s(section_model.plane, s)),
         frame=geometry.frame,

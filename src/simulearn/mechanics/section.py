@@ -11,39 +11,10 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from simulearn.material import Material
 from simulearn.mechanics.model import SectionModel
 from simulearn.mechanics.poses import Array, Pose, adjoint, exp_se3
 
-SHEAR = 0.3  # shear stiffness over E A, before fitting
-TORSION = 50.0 / (2.2 * 7.2 * 4.0**3)  # torsional stiffness over E w t3, before fitting
-PLA_STRAIN, PLA_THICKNESS = 0.09261, 4.0  # mm; of the section that the first guess was read off
-
 GAUSS = (0.5 - 0.5 / np.sqrt(3), 0.5 + 0.5 / np.sqrt(3))
-
-
-def first_guess(material: Material) -> SectionModel:
-    """Return the model of a uniform section, from which fitting begins."""
-    width, thick = material.section.width, material.section.thickness
-    modulus, area = material.law.stiffness, width * thick
-    shear = SHEAR * modulus * area
-    torsion = TORSION * modulus * width * thick**3
-    bending = [modulus * width * thick**3 / 12, modulus * thick * width**3 / 12]
-    stiffness = [modulus * area, shear, shear, torsion, *bending]
-    # Rest strains of PLA's section, in its released strain; curvature in strain over thickness.
-    e = material.shrinkage.active / PLA_STRAIN
-    return SectionModel(
-        active=jnp.array([-0.035 * e, 0.0]),
-        passive=jnp.array([-0.005 * e, 0.0]),
-        curvature=jnp.array([0.034 * e * PLA_THICKNESS / thick, 0.0]),
-        short=jnp.array(0.0),
-        tilt=jnp.array([-0.02 * e, 0.0]),
-        plane=jnp.array([-0.031 * e, 0.0]),
-        thickness=jnp.array([0.039 * e, 0.0]),
-        waist=e * jnp.array([[-0.005, 0.0], [0.023, 0.0]]),
-        stiffness=jnp.stack([jnp.log(jnp.array(stiffness)), jnp.zeros(6), jnp.zeros(6)]),
-        stiffened=jnp.zeros((2, 6)),
-    )
 
 
 def in_s(coefficients: Array, s: Any) -> Array:
@@ -51,18 +22,18 @@ def in_s(coefficients: Array, s: Any) -> Array:
     return coefficients[0] * s + coefficients[1] * s * s
 
 
-def tilted(section_model: SectionModel, held: Array, s: Any) -> Pose:
-    """Return the poses of faces relative to where they would lie if they were not held.
+def tilted(section_model: SectionModel, held: Array, reach: Array, s: Any) -> Pose:
+    """Return the poses of faces relative to where they would lie on a joint that stays flat.
 
     Args:
         section_model: of the section.
-        held: (...) 1 where the half leaves the fixed joint, else 0.
+        held: (...) 1 where the half leaves the fixed joint, whose lower half is held, else 0.
+        reach: (...) from the joint's centre to the face, mm.
         s: released fraction.
     """
     zero = jnp.zeros_like(held)
-    return exp_se3(
-        jnp.stack([zero, zero, zero, zero, held * in_s(section_model.tilt, s), zero], -1)
-    )
+    turn = held * in_s(section_model.tilt, s) - reach * in_s(section_model.lean, s)
+    return exp_se3(jnp.stack([zero, zero, zero, zero, turn, zero], -1))
 
 
 def rest(section_model: SectionModel, length: Array, ratio: Array, s: Any) -> tuple[Pose, Array]:
@@ -82,7 +53,9 @@ def rest(section_model: SectionModel, length: Array, ratio: Array, s: Any) -> tu
     passive, active = (1 - size) / 2 * length, size / 2 * length
     zero = jnp.zeros_like(length)
     bend = in_s(section_model.curvature, s) + section_model.short * s * (1 - size)
-    first = jnp.stack([passive * (1 + in_s(section_model.passive, s)), *[zero] * 5], -1)
+    own = [in_s(x, s) for x in section_model.own]
+    stretched = passive * (1 + in_s(section_model.passive, s))
+    first = jnp.stack([stretched, zero, zero, zero, -own[0] * passive, zero], -1)
     # The active half shrinks: a beam curls towards it, which is about -y where it is on top.
     second = jnp.stack(
         [
@@ -90,7 +63,7 @@ def rest(section_model: SectionModel, length: Array, ratio: Array, s: Any) -> tu
             zero,
             zero,
             zero,
-            -sign * bend * active,
+            -(sign * bend + own[1]) * active,
             zero,
         ],
         -1,

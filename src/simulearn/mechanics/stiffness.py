@@ -5,7 +5,7 @@ which every step goes downhill, or has that of forces that turn added, up to ter
 in the halves' twists. Motions and wrenches are about the origin, as in `forces`.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -32,11 +32,13 @@ class Factors(NamedTuple):
     """What a step needs besides the forces.
 
     Attributes:
-        root: (6 J, 6 J) Cholesky factor of the joints' stiffness.
+        matrix: (6 J, 6 J) the joints' stiffness.
+        root: (6 J, 6 J) its Cholesky factor, a constant where it is differentiated.
         soft: (B, 6, 6) inverse of the stiffness that holds a middle.
         follow: (2, B, 6, 6) how a middle follows its joints.
     """
 
+    matrix: Array
     root: Array
     soft: Array
     follow: Array
@@ -71,24 +73,18 @@ def balance(
     six = 6 * jnp.arange(len(half_beams.weight))[:, None] + jnp.arange(6)
     matrix = jnp.zeros((size, size)).at[rows, columns].add(blocks)
     matrix = matrix.at[six[..., None], six[:, None, :]].add(of_joints)
-    root = cholesky(_with_held(matrix, topology))
-    return gathered(topology, ends, loads), Factors(root, soft, follow)
+    matrix = _with_held(matrix, topology)
+    root = cholesky(jax.lax.stop_gradient(matrix))
+    return gathered(topology, ends, loads), Factors(matrix, root, soft, follow)
 
 
-@jax.custom_jvp
 def cholesky(matrix: Array) -> Array:
     """Return the Cholesky factor; of many, one after the other.
 
     JAX 0.10 would share many among threads, and two such calls at once wait for each other for
-    ever. Where it is differentiated (in fitting, one
-    call at a time) it is JAX's own.
+    ever.
     """
     return jax.custom_batching.sequential_vmap(jnp.linalg.cholesky)(matrix)
-
-
-@cholesky.defjvp
-def _cholesky_slope(at: tuple[Array], along: tuple[Array]) -> tuple[Array, Array]:
-    return jax.jvp(jnp.linalg.cholesky, at, along)
 
 
 def solve(topology: Topology, forces: Forces, by: Factors) -> tuple[Array, Array]:
@@ -96,7 +92,15 @@ def solve(topology: Topology, forces: Forces, by: Factors) -> tuple[Array, Array
     free = jnp.einsum("bij,bj->bi", by.soft, forces.middles)  # of a middle between held joints
     taken = jnp.einsum("hbji,bj->hbi", by.follow, forces.middles)  # by its joints
     right = forces.joints.at[topology.ends].add(taken).at[topology.fixed].set(0.0)
-    joints = -cho_solve((by.root, True), right.ravel()).reshape(right.shape)
+
+    def with_factors(_: Any, force: Array) -> Array:
+        return cho_solve((by.root, True), force)
+
+    # Differentiated by one more solution with the same factors, instead of through the factors.
+    motion = jax.lax.custom_linear_solve(
+        lambda x: by.matrix @ x, right.ravel(), with_factors, symmetric=True
+    )
+    joints = -motion.reshape(right.shape)
     return joints, jnp.einsum("hbij,hbj->bi", by.follow, joints[topology.ends]) - free
 
 

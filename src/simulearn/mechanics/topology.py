@@ -5,14 +5,13 @@ half is alike: x into the beam, y to its left, z up. `grid.outline` says which c
 which beams; where it lies is computed here, differentiably in the joints' places.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.grid.outline import corner_topology
-from simulearn.material import Section
 from simulearn.mechanics.model import REFERENCE_WIDTH
 from simulearn.mechanics.poses import Array
 
@@ -30,6 +29,7 @@ class Topology(NamedTuple):
         parts: (J, 4) into how many parts the gap between them is divided.
         part: (J, 4) which of them the corner bisects.
         side: (2, B) side of its joint that each half leaves; from corner `side` to the next.
+        real: (B,) 1 where a beam counts, 0 where it only fills up.
     """
 
     ends: Indices
@@ -39,6 +39,21 @@ class Topology(NamedTuple):
     parts: Indices
     part: Indices
     side: Indices
+    real: Any
+
+
+class Breadth(Protocol):
+    """What has the width and thickness of a section, mm."""
+
+    @property
+    def width(self) -> Any:
+        """Of the section, mm."""
+        ...
+
+    @property
+    def thickness(self) -> Any:
+        """Of the section, mm."""
+        ...
 
 
 class FlatGeometry(NamedTuple):
@@ -58,17 +73,17 @@ class FlatGeometry(NamedTuple):
         scale: () width of the section over that of the first material, 7.2 mm.
     """
 
-    centre: Array
-    corners: Array
-    area: Array
-    face: Array
-    frame: Array
-    reach: Array
-    skew: Array
-    length: Array
-    middle: Array
-    section: Array
-    scale: Array
+    centre: Any
+    corners: Any
+    area: Any
+    face: Any
+    frame: Any
+    reach: Any
+    skew: Any
+    length: Any
+    middle: Any
+    section: Any
+    scale: Any
 
 
 def topologies(beams: Indices, fixed: int, joints: NDArray[np.float64]) -> Topology:
@@ -80,10 +95,11 @@ def topologies(beams: Indices, fixed: int, joints: NDArray[np.float64]) -> Topol
         joints: (T, J, 2) mm.
     """
     ends = np.broadcast_to(beams.T, (len(joints), 2, len(beams)))
-    return Topology(ends, np.full(len(joints), fixed), *corner_topology(beams, joints))
+    real = np.ones((len(joints), len(beams)))
+    return Topology(ends, np.full(len(joints), fixed), *corner_topology(beams, joints), real)
 
 
-def flat_geometry(topology: Topology, joints: Array, section: Section) -> FlatGeometry:
+def flat_geometry(topology: Topology, joints: Array, section: Breadth) -> FlatGeometry:
     """Return the flat grid whose axes meet at joints (J, 2)."""
     width, up = section.width / 2, section.thickness / 2
     start, end = joints[topology.ends[0]], joints[topology.ends[1]]
@@ -125,13 +141,13 @@ def flat_geometry(topology: Topology, joints: Array, section: Section) -> FlatGe
         length=jnp.linalg.norm(vector[0], axis=-1) - reach.sum(0),
         middle=_lifted(place.mean(0)),
         section=mid_section,
-        scale=jnp.array(section.width / REFERENCE_WIDTH),
+        scale=jnp.asarray(section.width / REFERENCE_WIDTH),
     )
 
 
-def _lifted(xy: Array, z: float = 0.0) -> Array:
+def _lifted(xy: Array, z: Any = 0.0) -> Array:
     """Return points of the plane in space."""
-    return jnp.concatenate([xy, jnp.full_like(xy[..., :1], z)], -1)
+    return jnp.concatenate([xy, z + jnp.zeros_like(xy[..., :1])], -1)
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -25,7 +25,7 @@ def combined(
     """
     surface = skin(result, SPACING)
     left = extent_flat(result.grid)
-    right = extent_deformed(surface, camera, [0, -1])
+    right = extent_deformed(surface, camera, [0, -1], result.scatter)
     gap = 0.1 * float(right[1][0] - right[0][0])
     # The flat grid stands to the left of the deformed one, their middles at one height.
     at = np.array(

@@ -15,8 +15,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from simulearn.show import style
+from simulearn.show.band import bands, draw_band
 from simulearn.show.camera import Camera
 from simulearn.simulate import Result, Skin, skin, summary
+from simulearn.simulate.spread import Spread
 
 Array = NDArray[np.float64]
 SPACING = 2.0  # mm, length of the quadrilaterals along a beam
@@ -31,6 +33,8 @@ def draw_deformed(
     """Draw a frame of a result over the ghost of the flat grid."""
     draw_ghost(ax, surface, camera)
     draw_skin(ax, surface.vertices[frame], surface, result.grid.fixed, camera)
+    if result.scatter is not None and frame in (-1, len(surface.vertices) - 1):
+        draw_band(ax, result.scatter, camera)
 
 
 def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
@@ -101,9 +105,13 @@ def painted(
     return projected[..., :2], rgb, lines[..., :2], order
 
 
-def extent(surface: Skin, camera: Camera, frames: list[int]) -> tuple[Array, Array]:
-    """Return the lower left and upper right corner (2,) of what the frames cover, mm."""
+def extent(
+    surface: Skin, camera: Camera, frames: list[int], spread: Spread | None = None
+) -> tuple[Array, Array]:
+    """Return the lower left and upper right corner (2,) of what frames and prints cover, mm."""
     projected = camera.see(surface.vertices[frames])[..., :2].reshape(-1, 2)
+    if spread is not None:
+        projected = np.concatenate([projected, bands(spread, camera).reshape(-1, 2)])
     return projected.min(axis=0), projected.max(axis=0)
 
 
@@ -154,6 +162,13 @@ def qualified(result: Result) -> list[str]:
         words.append("snaps at " + ", ".join(f"{snap.released:.0%}" for snap in result.snaps))
     if result.bound_mm is not None:
         words.append(f"error below {result.bound_mm:.2f} mm (9 of 10)")
+    spread = result.scatter
+    if spread is not None:
+        band = "" if spread.lines is None else "; purple band: 9 of 10"
+        words.append(
+            f"{spread.prints} prints differ by {spread.overall:.1f} mm "
+            f"({spread.percent:.1f} %, standard deviation){band}"
+        )
     others = [message for message in result.warnings if message.code != "snap"]
     if len(others) == 1:
         words.append(others[0].message)
@@ -174,7 +189,7 @@ def deformed(
         width: of the figure, inches.
     """
     surface = skin(result, SPACING)
-    low, high = extent(surface, camera, [0, frame])
+    low, high = extent(surface, camera, [0, frame], result.scatter)
     fig = Figure(figsize=(width, width), dpi=style.DPI)
     ax, inch = style.footed(fig, low, high)
     draw_deformed(ax, result, surface, frame, camera)

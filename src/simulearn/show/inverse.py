@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.keeping import Step
+from simulearn.inverse.keeping import ROBUST, Step
 from simulearn.inverse.ranking import Ranking, Suggestion
 from simulearn.show import style
 from simulearn.show.animation import PAUSE, write_gif
@@ -65,6 +65,7 @@ def error_curve(steps: Sequence[Step], error_fea_mm: float | None = None) -> Fig
         ax.tick_params(which="both", labelsize=7)
     axes[0].set_ylabel("fitting error, mm", fontsize=8)
     end = f"{steps[0].error_mm:.1f} mm to {steps[-1].error_mm:.2f} mm"
+    end += " expected of prints" if steps[-1].phase == ROBUST else ""
     checked = "" if error_fea_mm is None else f"; by finite elements {error_fea_mm:.2f} mm (dot)"
     axes[0].set_title(end + checked, fontsize=8, loc="left")
     return style.ink(figure)

@@ -34,6 +34,7 @@ def simulate(
     model: Path | str | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
+    mesh: str | None = None,
 ) -> Result: ...
 
 
@@ -44,6 +45,7 @@ def simulate(
     model: Path | str | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
+    mesh: str | None = None,
 ) -> list[Outcome]: ...
 
 
@@ -53,6 +55,7 @@ def simulate(
     model: Path | str | None = None,
     progress: Progress | None = None,
     cancel: Cancel | None = None,
+    mesh: str | None = None,
 ) -> Result | list[Outcome]:
     """Return the result of a grid, or the outcomes of many in their order.
 
@@ -62,13 +65,14 @@ def simulate(
         model: for the engine "learned": a model's folder or name.
         progress: called with the frames done and the frames in all.
         cancel: stops the simulation.
+        mesh: for the engine "fea": "default" or "fine".
 
     Raises:
-        InputError: the one grid is not valid, or there is no such engine or model.
+        InputError: the one grid is not valid, or there is no such engine, model or mesh.
         ComputationError: the one grid is valid, but has no answer.
         CancelledError: the token was set.
     """
-    simulator = engine_of(engine, model) if isinstance(engine, str) else engine
+    simulator = engine_of(engine, model, mesh) if isinstance(engine, str) else engine
     if isinstance(grids, Grid):
         return one(simulator.simulate([grids], progress, cancel)[0])
     return Outcomes(simulator.simulate(list(grids), progress, cancel))

@@ -54,12 +54,13 @@ def check_all(
             for k in members:
                 outcomes[k] = Failure.of(grids[k], material)
             continue
-        for k, usual in zip(members, _usual(grids, members, material, training), strict=True):
+        sizes = None if training is None else training.of(material)
+        for k, usual in zip(members, _usual(grids, members, material, sizes), strict=True):
             grid = grids[k]
             if usual:
                 outcomes[k] = Checked(grid, grid.centred, material)
             else:
-                outcomes[k] = _check(grid, material, training)
+                outcomes[k] = _check(grid, material, sizes)
     return [outcome for outcome in outcomes if outcome is not None]
 
 

@@ -184,10 +184,11 @@ def _cancelled_by_frame(simulate_grid: Solver) -> Solver:
     return solver
 
 
-def _fea() -> StreamingSimulator:
+def _fea(mesh: str = "default") -> StreamingSimulator:
     from simulearn.fea import simulate_grid
+    from simulearn.fea.layout import MESHES
 
-    return Engine("fea", simulate_grid)
+    return Engine("fea", partial(simulate_grid, layout=MESHES[mesh]))
 
 
 def _calculix() -> StreamingSimulator:
@@ -216,26 +217,36 @@ ENGINES: dict[str, Callable[[], StreamingSimulator]] = {
     "learned": _learned,
 }
 
+MESHES = ("default", "fine")  # of finite elements; see `simulearn.fea.layout`
 
-def engine(name: str = "fea", model: Path | str | None = None) -> StreamingSimulator:
+
+def engine(
+    name: str = "fea", model: Path | str | None = None, mesh: str | None = None
+) -> StreamingSimulator:
     """Return the engine of a name.
 
     Args:
         name: one of ENGINES.
         model: for the engine "learned": a model's folder, or the name of one that comes with
             SimuLearn; by default the one called "default".
+        mesh: for the engine "fea": one of MESHES.
 
     Raises:
         InputError: no engine has that name, or what it needs is not installed; there is no such
-            model, or the engine takes none.
+            model or mesh, or the engine takes none.
     """
     if name not in ENGINES:
         known = ", ".join(ENGINES)
         raise InputError(
             f'engine "{name}" is not known; known are {known}', "engine-unknown", "engine"
         )
+    if mesh is not None and name != "fea":
+        raise InputError(f'engine "{name}" takes no mesh; only "fea" does', "engine-mesh", "mesh")
+    if mesh is not None and mesh not in MESHES:
+        known = ", ".join(MESHES)
+        raise InputError(f'mesh "{mesh}" is not known; known are {known}', "mesh-unknown", "mesh")
     if model is None:
-        return ENGINES[name]()
+        return ENGINES[name]() if mesh is None else _fea(mesh)
     if name != "learned":
         raise InputError(
             f'engine "{name}" takes no model; only "learned" does', "engine-model", "model"

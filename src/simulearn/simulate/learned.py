@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -74,7 +75,7 @@ class Learned:
         cancel: Cancel | None = None,
     ) -> Iterator[tuple[int, Outcome]]:
         """Yield (place in grids, outcome) after each batch; see `Simulator.simulate`."""
-        groups: dict[tuple[int, int, bytes], list[tuple[int, Checked]]] = defaultdict(list)
+        groups: dict[Any, list[tuple[int, Checked]]] = defaultdict(list)
         for k, checked in enumerate(check_all(grids, self.training)):
             if isinstance(checked, Failure):
                 yield k, checked
@@ -82,7 +83,8 @@ class Learned:
                 yield k, Failure.of(checked.given, wrong, MATERIAL_HINT)
             else:
                 grid = checked.grid
-                groups[len(grid.joints), grid.fixed, grid.beams.tobytes()].append((k, checked))
+                topology = len(grid.joints), grid.fixed, grid.beams.tobytes()
+                groups[topology, checked.material.digest].append((k, checked))
         done, total = 0, sum(map(len, groups.values()))
         for members in groups.values():
             for first in range(0, len(members), BATCH):
@@ -105,10 +107,10 @@ class Learned:
         """Yield the outcomes of designs of one topology."""
         begun = time.perf_counter()
         frames = self.bundle.model.rollout(
-            designs_of([one.grid for _, one in batch], self.bundle.card.material)
+            designs_of([one.grid for _, one in batch], batch[0][1].material)
         )
         seconds = (time.perf_counter() - begun) / len(batch)
-        thickness = self.material.section.thickness
+        thickness = batch[0][1].material.section.thickness
         through = passing(frames.sections[:, -1], batch[0][1].grid.beams, thickness)
         for t, (k, one) in enumerate(batch):
             yield k, self._outcome(one, frames, t, seconds, through[t])
@@ -137,7 +139,7 @@ class Learned:
             snaps=snaps,
             warnings=(
                 *one.warnings,
-                *self._unlike(one.grid),
+                *self._beyond_family(one.material),
                 *_left_balance(frames, t),
                 *_after_snap(snaps),
                 *_beyond(bound, one.grid),
@@ -146,35 +148,44 @@ class Learned:
             record={"kind": self.bundle.card.kind},
         )
 
-    def _unlike(self, grid: Grid) -> Iterator[Message]:
-        """Yield a warning where a grid's topology is not the one that was learnt."""
-        bound = getattr(self.bundle.model, "bound", None)
-        if bound is None:
-            return
-        joints, beams = (int(n) for n in bound.counts)
-        if (len(grid.joints), len(grid.beams)) != (joints, beams):
-            yield Message(
-                "topology-unlike",
-                "grid",
-                f"the grid has {len(grid.joints)} joints and {len(grid.beams)} beams, the model "
-                f"has learnt {joints} and {beams}; its error bound is wider, and less sure",
-            )
-
     def require(self, material: Material) -> None:
         """Raise InputError where a material is not the one that the model has learnt."""
         if wrong := self._not_learnt(material):
             raise wrong
 
+    def remark(self, material: Material) -> Message | None:
+        """Return why a material has no answer, or that it is outside what was learnt; else None."""
+        if wrong := self._not_learnt(material):
+            return Message(wrong.code, wrong.where, str(wrong))
+        return next(self._beyond_family(material), None)
+
     def _not_learnt(self, material: Material) -> InputError | None:
         learnt = self.material
         if material.physics == learnt.physics:  # whatever it is called
             return None
-        return InputError(
+        family = getattr(self.bundle.model, "learnt", None)
+        why = "" if family is None else family.wrong(material, learnt)
+        if why is None:
+            return None
+        text = (
             f"material is {material.identity}; "
-            f'the model "{self.bundle.card.name}" has learnt {learnt.identity}',
-            "material-not-learnt",
-            "material",
+            f'the model "{self.bundle.card.name}" has learnt {learnt.identity}'
         )
+        if why:
+            text += f" and others like it, but {why}"
+        return InputError(text, "material-not-learnt", "material")
+
+    def _beyond_family(self, material: Material) -> Iterator[Message]:
+        """Yield a warning where a material is outside what was learnt."""
+        family = getattr(self.bundle.model, "learnt", None)
+        remark = None if family is None else family.remark(material)
+        if remark is not None:
+            yield Message(
+                "material-beyond",
+                "material",
+                f"the material is outside what the model has learnt ({remark}): its error bound is "
+                "wider, and less sure",
+            )
 
 
 @lru_cache(maxsize=8)

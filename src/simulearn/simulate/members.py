@@ -5,14 +5,16 @@ a material of its own and, where wanted, a factor on the released strain of each
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import ComputationError
 from simulearn.grid import Grid
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.model import Designs, last_frame
 from simulearn.material import Material
+from simulearn.simulate.learned import Learned
 
 Numbers = NDArray[np.float64]
 
@@ -37,26 +39,36 @@ class Prints(NamedTuple):
 
 
 def last_frames(
-    grid: Grid, materials: Sequence[Material], factors: Numbers | None = None
+    grid: Grid,
+    materials: Sequence[Material],
+    factors: Numbers | None = None,
+    model: str = "default",
 ) -> Prints:
     """Return the last frame of a grid in each of T materials; open grids, as strips, too.
 
     Args:
         grid: a sound grid; it is not cleaned, so that single beams have an answer.
-        materials: of the prints; all have the same section.
+        materials: of the prints.
         factors: (T, B) by which the released strains of beams differ from the material's.
-    """
-    from simulearn.fea import simulate_grid
+        model: the learned model that answers, by name or folder.
 
-    count, many = len(materials), len(grid.beams)
-    joints: Any = np.full((count, len(grid.joints), 8, 3), np.nan)
-    sections: Any = np.full((count, many, 3, 4, 3), np.nan)
-    for t, material in enumerate(materials):
-        try:
-            trial = simulate_grid(
-                grid, material, factors=None if factors is None else factors[t]
-            )
-        except ComputationError:
-            continue
-        joints[t], sections[t] = trial.joints[-1], trial.beams[-1]
-    return Prints(joints, sections, np.isfinite(joints).all(axis=(1, 2, 3)))
+    Raises:
+        InputError: a material is too far outside what the model has learnt.
+    """
+    engine = Learned(bundle_of(model))
+    for material in {material.digest: material for material in materials}.values():
+        engine.require(material)
+    grid = grid.centred
+    count = len(materials)
+    designs = Designs(
+        grid.beams,
+        grid.fixed,
+        np.tile(grid.joints, (count, 1, 1)),
+        np.tile(grid.actuators, (count, 1)),
+        materials[0],
+        grid.material,
+        tuple(materials),
+        factors,
+    )
+    last = last_frame(engine.bundle.model, designs)
+    return Prints(last.joints, last.sections, last.converged)

@@ -21,6 +21,7 @@ from simulearn.schedule import FRAMES, Snap
 
 if TYPE_CHECKING:  # so that reading a result does not load a solver
     from simulearn.fea import Solid
+    from simulearn.simulate.spread import Spread
 
 __all__ = ["FRAMES", "Failure", "Outcome", "Outcomes", "Result", "one", "results"]
 
@@ -49,6 +50,7 @@ class Result(Displayed):
         record: of the solver's work, for example iterations per frame.
         solid: the solid mesh, where the engine has one.
         displacements: (12, N, 3) of the solid's nodes from the flat grid.
+        scatter: how prints of the design differ, where that was computed.
     """
 
     grid: Grid
@@ -66,6 +68,7 @@ class Result(Displayed):
     record: dict[str, Any] = field(default_factory=dict)
     solid: Solid | None = None
     displacements: NDArray[np.float64] | None = None
+    scatter: Spread | None = None
 
     @property
     def centres(self) -> NDArray[np.float64]:

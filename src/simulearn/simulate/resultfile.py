@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
-from simulearn.grid import grid_from_dict, grid_to_dict
-from simulearn.material import Identity
+from simulearn.grid import Grid, grid_from_dict, grid_to_dict
+from simulearn.material import Identity, name_of
 from simulearn.schedule import Snap
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result
+from simulearn.simulate.spread import spread_from_dict, spread_to_dict
 
 SCHEMA = "simulearn.result/1"
 FAILURE = "simulearn.failure/1"
@@ -34,7 +35,7 @@ UNITS = {
     "seconds": "s; time the simulation took",
     "record": "JSON; of the solver's work",
     "qualities": "JSON; stable, bound_mm (mm), snaps (released fraction, frame), warnings, "
-    "material and model (name, SHA-256)",
+    "material and model (name, SHA-256), scatter (mm)",
     "displacements": "mm; frame, node of the solid, xyz",
     "solid_nodes": "mm; node, xyz, in the flat grid",
     "solid_bricks": "node indices; brick, 20 nodes in the order of scikit-fem's ElementHexS2",
@@ -90,6 +91,7 @@ def qualities(result: Result) -> dict[str, Any]:
         "warnings": [dataclasses.asdict(message) for message in result.warnings],
         "material": {"name": result.material.name, "digest": result.material.digest},
         "model": None if model is None else {"name": model.name, "digest": model.digest},
+        **({} if result.scatter is None else {"scatter": spread_to_dict(result.scatter)}),
     }
 
 
@@ -120,11 +122,11 @@ def result_from_dict(data: Any, *, paths: bool = False) -> Result:
         beams=_numbers(data, "beams", (FRAMES, len(grid.beams), 3, 4, 3)),
         stress=None,
         seconds=float(data["seconds"]),
-        **_qualities(data, grid.material),
+        **_qualities(data, grid),
     )
 
 
-def _qualities(data: dict[str, Any], material: str) -> dict[str, Any]:
+def _qualities(data: dict[str, Any], grid: Grid) -> dict[str, Any]:
     """Return the fields of a result that qualify it; files of earlier versions have none."""
     bound = data.get("bound_mm")
     if not isinstance(data.get("stable", True), bool):
@@ -132,13 +134,15 @@ def _qualities(data: dict[str, Any], material: str) -> dict[str, Any]:
     if bound is not None and not (isinstance(bound, int | float) and np.isfinite(bound)):
         raise InputError("bound_mm: is not a number", "result", "bound_mm")
     model = data.get("model")
+    named = {"name": name_of(grid.material), "digest": ""}
     return {
-        "material": _read(data, "material", Identity, {"name": material, "digest": ""}),
+        "material": _read(data, "material", Identity, named),
         "model": None if model is None else _read(data, "model", Identity, None),
         "stable": data.get("stable", True),
         "bound_mm": None if bound is None else float(bound),
         "snaps": _read_all(data, "snaps", Snap),
         "warnings": _read_all(data, "warnings", Message),
+        "scatter": spread_from_dict(data["scatter"], grid) if data.get("scatter") else None,
     }
 
 

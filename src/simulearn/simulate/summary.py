@@ -18,13 +18,15 @@ def summary(result: Result) -> dict[str, Any]:
         moved_mm: the largest distance a joint centre moved, joint_moved: which joint.
         seconds: time the simulation took.
         iterations: iterations of the solver in all, where the engine counts them.
+        mesh, bricks: name of the mesh and its number of bricks, where the engine has one.
         stable, bound_mm, snaps, warnings, material, model: see `Result`.
+        scatter: how prints differ, where that was computed.
     """
     flat, last = result.centres[0], result.centres[-1]
     rise, moved = last[:, 2] - flat[:, 2], np.linalg.norm(last - flat, axis=1)
     risen, far = int(np.abs(rise).argmax()), int(moved.argmax())
     z = np.concatenate([result.joints[-1].reshape(-1, 3), result.beams[-1].reshape(-1, 3)])[:, 2]
-    numbers = {
+    numbers: dict[str, Any] = {
         "dimension_mm": result.grid.dimension,
         "lowest_mm": float(z.min()),
         "highest_mm": float(z.max()),
@@ -37,6 +39,7 @@ def summary(result: Result) -> dict[str, Any]:
     iterations = result.record.get("iterations")
     if iterations is not None:
         numbers["iterations"] = int(np.sum(iterations))
+    numbers |= {key: result.record[key] for key in ("mesh", "bricks") if key in result.record}
     rounded = {k: round(v, 6) if isinstance(v, float) else v for k, v in numbers.items()}
     return rounded | qualities(result)
 

@@ -72,6 +72,23 @@ class DesignLimits(_Answer):
     actuator_length: float
 
 
+class ScatterFacts(_Answer):
+    """Relative standard deviations of the strain from print to print and from beam to beam."""
+
+    print: float
+    beam: float
+
+
+class LearnedFacts(_Answer):
+    """Whether the default model answers for a material, and what there is to say about that."""
+
+    knows: Annotated[
+        Literal["inside", "outside", "no"],
+        Field(description="outside: with a wider bound; no: finite elements do"),
+    ]
+    message: str
+
+
 class MaterialFacts(_Answer):
     """A material system."""
 
@@ -79,6 +96,10 @@ class MaterialFacts(_Answer):
     title: str
     section: SectionSize
     limits: DesignLimits
+    strain: Annotated[float, Field(description="released by an active half")]
+    curl: Annotated[float, Field(description="by so much more the top shrinks than the bottom")]
+    scatter: ScatterFacts
+    learned: LearnedFacts
 
 
 class Materials(_Answer):
@@ -145,6 +166,31 @@ class SnapFacts(_Answer):
     frame: int
 
 
+class JointSpread(_Answer):
+    """How prints differ at a joint, mm; `simulearn.simulate.spread` says more."""
+
+    mean_mm: Point
+    up_mm: float
+    plane_mm: float
+    up_90_mm: Interval
+    plane_90_mm: float
+
+
+class SpreadAnswer(_Answer):
+    """How prints of the design differ in the last frame."""
+
+    print: float
+    beam: float
+    law: str
+    seed: int
+    engine: str
+    drawn: int
+    prints: int
+    overall_mm: float
+    overall_percent: float
+    joints: list[JointSpread]
+
+
 class ResultAnswer(_Answer):
     """The twelve frames of a morphing grid; mm, s, +z up."""
 
@@ -160,6 +206,9 @@ class ResultAnswer(_Answer):
     warnings: list[MessageBody]
     material: Identity
     model: Identity | None
+    scatter: Annotated[
+        SpreadAnswer | None, Field(description="only where prints were asked for")
+    ] = None
 
 
 class FailureAnswer(_Answer):

@@ -21,7 +21,16 @@ from simulearn.studio.openapi import describe
 from simulearn.studio.page import serve_page
 from simulearn.studio.problems import LastResort, answer_errors
 from simulearn.studio.rhino import routes as rhino
-from simulearn.studio.routes import about, designs, documents, files, jobs, printers, prints
+from simulearn.studio.routes import (
+    about,
+    designs,
+    documents,
+    files,
+    jobs,
+    materials,
+    printers,
+    prints,
+)
 from simulearn.studio.safety import BodyLimit, OwnOriginOnly, SecurityHeaders
 from simulearn.studio.settings import Settings
 from simulearn.studio.simulations import Simulations
@@ -29,6 +38,7 @@ from simulearn.studio.turns import Turns
 
 ROUTERS = (
     about.router,
+    materials.router,
     designs.router,
     jobs.router,
     printers.router,

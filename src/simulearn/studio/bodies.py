@@ -19,20 +19,38 @@ from simulearn.grid import grid_to_dict, make
 from simulearn.grid.gridfile import GridFile
 from simulearn.inverse import Task
 from simulearn.learn.common.bundle import shipped
+from simulearn.material import Material, materials_of
+from simulearn.material.own import MOST_MATERIALS, MOST_TEXT
 from simulearn.studio.problems import Problem
 from simulearn.studio.simulations import AT_ONCE
 
+MOST_PRINTS = 300  # as many as a model answers in a moment
 SHORT = 2**16  # bytes of JSON that take a millisecond or less; more are read beside the loop
 
+OwnMaterials = Annotated[
+    list[Annotated[str, Field(max_length=MOST_TEXT)]],
+    Field(
+        max_length=MOST_MATERIALS,
+        description="TOML texts of materials that do not come along; grids name them by name",
+    ),
+]
 GridBody = Annotated[GridFile, SkipValidation]
 
 
+class _GridFile(GridFile):
+    """A grid, and the materials that it may name besides those that come along."""
+
+    materials: OwnMaterials = Field(default=[])
+
+
 class _TaskFile(Task):
-    """A grid, goals, what may change, and how to search."""
+    """A grid, goals, what may change, how to search, and materials that the grid may name."""
 
     grid: GridFile  # type: ignore[assignment]
+    materials: OwnMaterials = Field(default=[])
 
 
+GridAlone = Annotated[_GridFile, SkipValidation]
 TaskBody = Annotated[_TaskFile, SkipValidation]
 
 
@@ -42,7 +60,7 @@ def _one_of(*names: str) -> Any:
 
 
 class SimulateBody(BaseModel):
-    """Designs to simulate, by which engine, and by which model where that is `learned`."""
+    """Designs to simulate, by which engine, by which model where that is `learned`, materials."""
 
     model_config = ConfigDict(
         strict=True,
@@ -53,6 +71,15 @@ class SimulateBody(BaseModel):
     grids: Annotated[list[GridBody], Field(min_length=1)]
     engine: Annotated[str, _one_of(*AT_ONCE)] = "learned"
     model: Annotated[str, _one_of("default", *shipped())] | None = None
+    materials: OwnMaterials = []
+    prints: Annotated[
+        int,
+        Field(
+            ge=0,
+            le=MOST_PRINTS,
+            description="to be drawn from the material's scatter, of the one grid; 0: none",
+        ),
+    ] = 0
 
 
 class JsonRoute(APIRoute):
@@ -86,6 +113,18 @@ class _StrictRequest(Request):
         if len(body) <= SHORT:
             return _parsed(body)
         return await to_thread.run_sync(_parsed, body)
+
+
+def parted(data: Any) -> tuple[Any, dict[str, Material]]:
+    """Return a grid or task of a request without its materials, and these by their names.
+
+    Raises:
+        InputError: one is not a material; see `materials_of`.
+    """
+    if not isinstance(data, dict) or "materials" not in data:
+        return data, {}
+    rest = {key: value for key, value in data.items() if key != "materials"}
+    return rest, materials_of(data["materials"])
 
 
 def json_response(content: Any) -> Response:

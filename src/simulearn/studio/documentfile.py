@@ -13,7 +13,9 @@ from simulearn.errors import InputError
 from simulearn.fabricate.profiles import MOST_TEXT
 from simulearn.grid.arrays import shown
 from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
+from simulearn.material import materials_of
 from simulearn.material.material import is_name
+from simulearn.studio.bodies import OwnMaterials
 from simulearn.studio.problems import place_of
 
 SCHEMA = "simulearn.document/1"
@@ -65,20 +67,22 @@ DocumentPrinter = Annotated[
 
 
 class DocumentFile(_Strict):
-    """A design, its goals, and what it is to be printed on: a name, or a profile."""
+    """A design, its goals, what it is to be printed on (a name, or a profile), own materials."""
 
     schema_: Annotated[Literal["simulearn.document/1"], Field(alias="schema")]
     name: Annotated[str, Field(max_length=200)] = ""
     grid: Drawing
     goals: Annotated[list[DocumentGoal], Field(max_length=MOST_GOALS)] = []
     printer: DocumentPrinter = ""
+    materials: OwnMaterials = []
 
 
 def check_document(data: Any) -> None:
     """Make sure that data is a document.
 
     Raises:
-        InputError: a key, type, length, index or number is wrong; one line says which.
+        InputError: a key, type, length, index, number or own material is wrong; one line says
+            which.
     """
     try:
         document = DocumentFile.model_validate(data)
@@ -88,6 +92,7 @@ def check_document(data: Any) -> None:
     except UnicodeEncodeError as error:
         raise InputError("the document holds half a character", "document", "name") from error
     _check_indices(document)
+    materials_of(document.materials)
 
 
 def _check_indices(document: DocumentFile) -> None:

@@ -44,8 +44,8 @@ def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, 
 
     Returns:
         kind (grid, task, result, document or drawing), name, grid, goals, printer (None if the file
-        names none), messages about what was not taken over, and what is to be told of a drawing:
-        format, unit, layers and mends (None for other files).
+        names none), texts of own materials, messages about what was not taken over, and what is to
+        be told of a drawing: format, unit, layers and mends (None for other files).
 
     Raises:
         InputError: the file holds nothing that can be opened; the message says what and where.
@@ -70,6 +70,7 @@ def _parts(data: bytes, name: str, options: Options | None) -> dict[str, Any]:
         "name": "",
         "goals": [],
         "printer": None,
+        "materials": [],
         "messages": [],
         "drawing": None,
     }
@@ -141,10 +142,14 @@ def _of_task(data: Any) -> dict[str, Any]:
             raise
         task = Task.model_validate(data)
     messages = []
-    if (task.free, task.limits, task.method) != (Free(), Limits(), "default"):
-        text = "what the task says about free parts, limits and method is not part of a document"
+    plain = (task.free, task.limits, task.method) == (Free(), Limits(), "default")
+    if not plain or task.of_prints:
+        text = (
+            "what the task says about free parts, limits, method, tolerances and robust is not "
+            "part of a document"
+        )
         messages.append(Message("opened-task", "file", text))
-    goals = [goal.model_dump() for goal in task.goals]
+    goals = [goal.model_dump(exclude={"tolerance"}) for goal in task.goals]
     grid = grid_to_dict(grid_from_dict(task.grid))
     return {"kind": "task", "grid": grid, "goals": goals, "messages": messages}
 
@@ -166,7 +171,7 @@ def _of_drawing(found: Imported) -> dict[str, Any]:
 
 def _of_document(data: Any) -> dict[str, Any]:
     check_document(data)
-    optional = {key: data[key] for key in ("name", "printer") if data.get(key)}
+    optional = {key: data[key] for key in ("name", "printer", "materials") if data.get(key)}
     return {
         "kind": "document",
         "grid": data["grid"],

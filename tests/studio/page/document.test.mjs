@@ -28,6 +28,9 @@ test("what may be left out has its usual value, and numbered sections get their 
   assert.equal(document.printer, emptyDocument().printer);
   const printer = { profile: 'base = "voron"\n' };
   assert.deepEqual(readDocument({ ...document, printer }).printer, printer);
+  assert.deepEqual(document.materials, []);
+  const materials = ['name = "my-pla"\n'];
+  assert.deepEqual(readDocument({ ...document, materials }).materials, materials);
 });
 
 const deep = JSON.parse("[".repeat(50_000) + "]".repeat(50_000));
@@ -41,6 +44,9 @@ const WRONG = [
   [(one) => ({ ...one, printer: "" }), /printer is ""/],
   [(one) => ({ ...one, printer: { path: "x.toml" } }), /printer has the key "path"/],
   [(one) => ({ ...one, printer: { profile: "x".repeat(70_000) } }), /printer.profile is "x/],
+  [(one) => ({ ...one, materials: {} }), /materials are not a list of at most 16 texts/],
+  [(one) => ({ ...one, materials: ["x", { path: "x" }] }), /materials\[1\] is {"path":"x"}; it is a text/],
+  [(one) => ({ ...one, materials: Array(17).fill("x") }), /materials are not a list of at most 16/],
   [(one) => ({ ...one, grid: undefined }), /the grid is missing/],
   [(one) => ({ ...one, goals: {} }), /goals are not a list/],
   [(one) => ({ ...one, name: deep }), /name is nested too deeply/],

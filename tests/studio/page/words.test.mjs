@@ -6,7 +6,7 @@ import test from "node:test";
 
 const PAGE = new URL("../../../src/simulearn/studio/page/", import.meta.url);
 const SERVER_SAYS = /^design_/; // the server has English descriptions of its library
-const PARTS = ["common", "drawing", "panels", "plan", "print", "repairs", "shape"];
+const PARTS = ["common", "drawing", "material", "panels", "plan", "print", "repairs", "shape"];
 
 async function strings(part) {
   return (await import(new URL(`text/${part}.js`, PAGE)))[part];

@@ -70,6 +70,13 @@ def calculix(
     order = matching(solid.points)
     if (matching(solid.joint_points) != order).any():
         raise InputError("CalculiX needs the integration points of joints in the order of beams")
+    if material.shrinkage.curl:
+        raise InputError(
+            f"material {material.name} curls of its own (shrinkage.curl), so that growth varies "
+            "inside bricks, which CalculiX does not take; use the engine fea",
+            "calculix-curl",
+            "material",
+        )
     data = _data(material, law)
     begin = time.monotonic()
     report = _reporter(progress)

@@ -11,7 +11,8 @@ from simulearn.errors import Cancel
 from simulearn.fea.calculix.run import Kind, calculix
 from simulearn.fea.kernels import entries
 from simulearn.fea.laws import law_of
-from simulearn.fea.mesh import THREE_ACROSS, Layout, mesh
+from simulearn.fea.layout import THREE_ACROSS, Layout
+from simulearn.fea.mesh import mesh
 from simulearn.fea.points import bricks_of
 from simulearn.fea.stress import sample_points, sampled_stress
 from simulearn.fea.trial import Trial

@@ -102,9 +102,10 @@ def factor(law, bricks, fronts, u, s, carried, mixed, load, drag, factors, pivot
 @native(fastmath=FUSED)
 def solve(fronts, factors, pivots, load):
     """Return the displacements (N, 3) under a load (N, 3), with the factors at hand."""
-    forward_substitute(fronts, factors, pivots, load.copy())
+    local = np.empty(3 * len(load))
+    forward_substitute(fronts, factors, pivots, load.copy(), local)
     x = np.zeros_like(load)
-    back_substitute(fronts, factors, x, np.empty(3 * len(load)))
+    back_substitute(fronts, factors, x, local)
     return x
 
 

@@ -17,6 +17,8 @@ from simulearn.native import native
 
 PANEL = 6  # rows eliminated at once; a front's own rows are a multiple of three
 TILE = 512  # columns of a panel
+ROWS = 4  # that an update takes at a time
+SUMMED = {"contract", "reassoc"}  # sums of products may be added in any order
 
 
 class Fronts(NamedTuple):
@@ -152,7 +154,7 @@ def eliminate(front, rows, own, factors, at, pivots, first):
 @native(entry=False, fastmath=FUSED)
 def _subtract(front, to, factor, source, many):
     """Subtract a multiple of `many` numbers from others of the same matrix."""
-    u, v, n = np.uintp(to), np.uintp(source), np.uintp(many)  # see `_two_rows`
+    u, v, n = np.uintp(to), np.uintp(source), np.uintp(many)  # see `_rows`
     for j in range(n):
         front[u + j] -= factor * front[v + j]
 
@@ -182,37 +184,50 @@ def _update(front, ld, begin, wide, rows, factors, w, panel):
     """
     end = begin + wide
     panel[wide * TILE :] = 0.0
-    a, b = np.zeros(PANEL), np.zeros(PANEL)
+    of = np.zeros((ROWS, PANEL))
     for left in range(end, ld, TILE):
         many = min(TILE, ld - left)
         for t in range(wide):
             scale(factors, w + t * ld + left, 1.0, panel, t * TILE, many)
-        for i in range(end, min(left + many, rows), 2):
-            # Two rows at a time; the lower one's entry before its diagonal is not used.
-            two = i + 1 < rows
+        for i in range(end, min(left + many, rows), ROWS):
+            # Some rows at a time; what the lower ones have before their diagonals is not used.
+            high = min(ROWS, rows - i)
             for t in range(wide):
-                a[t] = front[(begin + t) * ld + i]
-                b[t] = front[(begin + t) * ld + i + 1] if two else 0.0
+                for r in range(ROWS):
+                    of[r, t] = front[(begin + t) * ld + i + r] if r < high else 0.0
             first = max(i, left)
-            upper = i * ld + first
-            lower = upper + ld if two else upper
-            _two_rows(front, upper, lower, panel, first - left, left + many - first, a, b)
+            at = i * ld + first
+            _rows(
+                front,
+                at,
+                at + ld if high > 1 else at,
+                at + 2 * ld if high > 2 else at,
+                at + 3 * ld if high > 3 else at,
+                panel,
+                first - left,
+                left + many - first,
+                of,
+            )
 
 
 @native(entry=False, fastmath=FUSED)
-def _two_rows(front, upper, lower, panel, x, many, a, b):
-    """Subtract multiples of a panel's rows, from column x on, from two rows of a front."""
+def _rows(front, first, second, third, fourth, panel, x, many, of):
+    """Subtract multiples of a panel's rows, from column x on, from four rows of a front."""
     # Unsigned indices are not taken for places counted from the end.
-    u, v, p0, n = np.uintp(upper), np.uintp(lower), np.uintp(x), np.uintp(many)
-    p1, p2, p3 = np.uintp(x + TILE), np.uintp(x + 2 * TILE), np.uintp(x + 3 * TILE)
-    p4, p5 = np.uintp(x + 4 * TILE), np.uintp(x + 5 * TILE)
-    a0, a1, a2, a3, a4, a5 = a[0], a[1], a[2], a[3], a[4], a[5]
-    b0, b1, b2, b3, b4, b5 = b[0], b[1], b[2], b[3], b[4], b[5]
+    u0, u1, u2, u3 = np.uintp(first), np.uintp(second), np.uintp(third), np.uintp(fourth)
+    p0, p1, p2, n = np.uintp(x), np.uintp(x + TILE), np.uintp(x + 2 * TILE), np.uintp(many)
+    p3, p4, p5 = np.uintp(x + 3 * TILE), np.uintp(x + 4 * TILE), np.uintp(x + 5 * TILE)
+    a0, a1, a2, a3, a4, a5 = of[0, 0], of[0, 1], of[0, 2], of[0, 3], of[0, 4], of[0, 5]
+    b0, b1, b2, b3, b4, b5 = of[1, 0], of[1, 1], of[1, 2], of[1, 3], of[1, 4], of[1, 5]
+    c0, c1, c2, c3, c4, c5 = of[2, 0], of[2, 1], of[2, 2], of[2, 3], of[2, 4], of[2, 5]
+    d0, d1, d2, d3, d4, d5 = of[3, 0], of[3, 1], of[3, 2], of[3, 3], of[3, 4], of[3, 5]
     for j in range(n):
         w0, w1, w2 = panel[p0 + j], panel[p1 + j], panel[p2 + j]
         w3, w4, w5 = panel[p3 + j], panel[p4 + j], panel[p5 + j]
-        front[u + j] -= a0 * w0 + a1 * w1 + a2 * w2 + a3 * w3 + a4 * w4 + a5 * w5
-        front[v + j] -= b0 * w0 + b1 * w1 + b2 * w2 + b3 * w3 + b4 * w4 + b5 * w5
+        front[u0 + j] -= a0 * w0 + a1 * w1 + a2 * w2 + a3 * w3 + a4 * w4 + a5 * w5
+        front[u1 + j] -= b0 * w0 + b1 * w1 + b2 * w2 + b3 * w3 + b4 * w4 + b5 * w5
+        front[u2 + j] -= c0 * w0 + c1 * w1 + c2 * w2 + c3 * w3 + c4 * w4 + c5 * w5
+        front[u3 + j] -= d0 * w0 + d1 * w1 + d2 * w2 + d3 * w3 + d4 * w4 + d5 * w5
 
 
 @native(entry=False, fastmath=FUSED)
@@ -227,42 +242,48 @@ def back_substitute(fronts, factors, x, local):
                 local[3 * a + k] = x[fronts.nodes[first + a], k]
         for r in range(own - 1, -1, -1):
             row = at + r * ld
-            p0 = p1 = p2 = p3 = 0.0
-            j = r + 1
-            while j + 3 < rows:
-                p0 += factors[row + j] * local[j]
-                p1 += factors[row + j + 1] * local[j + 1]
-                p2 += factors[row + j + 2] * local[j + 2]
-                p3 += factors[row + j + 3] * local[j + 3]
-                j += 4
-            while j < rows:
-                p0 += factors[row + j] * local[j]
-                j += 1
-            local[r] = factors[row + rows] - (p0 + p1 + p2 + p3)
+            local[r] = factors[row + rows] - _dot(factors, row + r + 1, local, r + 1, rows - r - 1)
         for a in range(fronts.own[f]):
             for k in range(3):
                 x[fronts.nodes[first + a], k] = local[3 * a + k]
 
 
+@native(entry=False, fastmath=SUMMED)
+def _dot(factors, at, local, first, many):
+    """Return the sum of products of `many` numbers."""
+    u, v, n = np.uintp(at), np.uintp(first), np.uintp(many)
+    total = 0.0
+    for j in range(n):
+        total += factors[u + j] * local[v + j]
+    return total
+
+
 @native(entry=False, fastmath=FUSED)
-def forward_substitute(fronts, factors, pivots, load):
+def forward_substitute(fronts, factors, pivots, load, local):
     """Overwrite the forces over the pivots in the factors with those of another load (N, 3).
 
     The load is overwritten.
     """
     for f in range(len(fronts.own)):
         first, count = fronts.start[f], fronts.start[f + 1] - fronts.start[f]
-        rows, ld, at = 3 * count, 3 * count + 1, fronts.factors[f]
-        for a in range(fronts.own[f]):
+        rows, own = 3 * count, 3 * fronts.own[f]
+        ld, at = rows + 1, fronts.factors[f]
+        for a in range(count):
             for k in range(3):
-                r = 3 * a + k
-                row = at + r * ld
-                y = load[fronts.nodes[first + a], k]
-                factors[row + rows] = y / pivots[fronts.pivots[f] + r]
-                for l in range(k + 1, 3):  # noqa: E741
-                    load[fronts.nodes[first + a], l] -= factors[row + 3 * a + l] * y
-                for b in range(a + 1, count):
-                    node = fronts.nodes[first + b]
-                    load[node, 0] -= factors[row + 3 * b] * y
-                    load[node, 1] -= factors[row + 3 * b + 1] * y
-                    load[node, 2] -= factors[row + 3 * b + 2] * y
+                local[3 * a + k] = load[fronts.nodes[first + a], k]
+        for r in range(own):
+            row = at + r * ld
+            y = local[r]
+            factors[row + rows] = y / pivots[fronts.pivots[f] + r]
+            _subtract_from(local, r + 1, y, factors, row + r + 1, rows - r - 1)
+        for a in range(fronts.own[f], count):
+            for k in range(3):
+                load[fronts.nodes[first + a], k] = local[3 * a + k]
+
+
+@native(entry=False, fastmath=FUSED)
+def _subtract_from(local, to, factor, factors, source, many):
+    """Subtract a multiple of `many` numbers from others."""
+    u, v, n = np.uintp(to), np.uintp(source), np.uintp(many)
+    for j in range(n):
+        local[u + j] -= factor * factors[v + j]

@@ -37,7 +37,7 @@ const fact = ([name, text, digest]) => [
 
 /** Return [key, text, digest] of each fact. */
 function facts(result) {
-  const { engine, model, material, bound_mm: bound, stable, snaps, seconds } = result;
+  const { engine, model, material, bound_mm: bound, stable, snaps, seconds, scatter } = result;
   const key = `share.engine_${engine}`;
   const reference = ["fea", "calculix"].includes(engine);
   const near = bound === null
@@ -52,6 +52,9 @@ function facts(result) {
     ["balance", t(stable ? "share.stable" : "share.unstable")],
     ["snaps", percents.join(", ") || t("share.none")],
     ["range", t("share.between", { low: number(result.lowest_mm), high: number(result.highest_mm) })],
+    ...(scatter ? [["scatter", t("share.differ", {
+      mm: number(scatter.overall_mm), percent: number(scatter.overall_percent), prints: scatter.prints,
+    })]] : []),
     ["time", t("share.seconds", { s: number(seconds, seconds < 1 ? 3 : 1) })],
   ];
 }

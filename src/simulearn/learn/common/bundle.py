@@ -118,6 +118,7 @@ class Card(_Data):
         return TrainingRange(
             dimension=(low.dimension[0], low.dimension[1]),
             beam_length=(low.beam_length[0], low.beam_length[1]),
+            thickness=self.material.section.thickness,
         )
 
 

@@ -64,8 +64,9 @@ def first_frame(designs: Designs) -> FirstFrame:
 def designs_of(batch: Batch) -> Designs:
     """Return the designs of trials."""
     return Designs(
-        batch.beams, batch.fixed, batch.flat, batch.actuators, batch.material, batch.reference
-    )
+        batch.beams, batch.fixed, batch.flat, batch.actuators, batch.material, batch.reference,
+        batch.materials, mesh=batch.mesh,
+    )  # fmt: skip
 
 
 def _at(points: Array, z: float) -> Array:

@@ -1,4 +1,4 @@
-"""How far an answer is from the truth, by the paper's protocol and some more.
+"""How far an answer is from the finite elements', by the paper's protocol and some more.
 
 The vertex error of a trial is the mean distance over all corners of joints and sections in the
 last frame, in % of that trial's grid dimension.
@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from simulearn.dataset import Batch
 from simulearn.dataset.features import end_modes, touching
 from simulearn.learn.common.model import Frames
+from simulearn.learn.common.parts import parts_of
+from simulearn.material import member_of
 from simulearn.rigid import fit_rotation
 
 Array = NDArray[np.float64]
@@ -31,6 +33,8 @@ class Errors:
         motion: (T,) mean distance that the corners move from flat to the last frame, mm.
         bound: (T,) the model's own estimate of the last frame's vertex error, mm, or None.
         converged: (T,).
+        kinds: (T,) name of each trial's kind of grid, where there are several.
+        members: (T, M) numbers of their materials; see `material.Member`.
     """
 
     numbers: NDArray[np.int64]
@@ -41,6 +45,8 @@ class Errors:
     motion: Array
     bound: Array | None
     converged: NDArray[np.bool_]
+    kinds: tuple[str, ...] = ()
+    members: Array | None = None
 
     @property
     def percent(self) -> Array:
@@ -63,6 +69,7 @@ class Errors:
             "rotation_deg": float(self.rotation[:, -1].mean()),
             "gap_mm": float(self.gap[:, -1].mean()),
             "motion_mm": float(self.motion.mean()),
+            **parts_of(self),
             "converged": int(self.converged.sum()),
             "frames": [
                 {
@@ -101,6 +108,8 @@ def errors(frames: Frames, batch: Batch) -> Errors:
         motion=moved.mean(axis=1),
         bound=frames.bound_mm,
         converged=frames.converged,
+        kinds=batch.kinds,
+        members=np.array([member_of(m) for m in batch.materials or (batch.material,) * len(batch)]),
     )
 
 
@@ -110,9 +119,13 @@ def together(parts: list[Errors]) -> Errors:
     def all_of(name: str) -> Any:
         return np.concatenate([getattr(part, name) for part in parts])
 
-    names = ("numbers", "dimension", "vertex", "rotation", "gap", "motion", "converged")
+    names = ("numbers", "dimension", "vertex", "rotation", "gap", "motion", "converged", "members")
     bounded = all(part.bound is not None for part in parts)
-    return Errors(bound=all_of("bound") if bounded else None, **{n: all_of(n) for n in names})
+    return Errors(
+        bound=all_of("bound") if bounded else None,
+        kinds=tuple(kind for part in parts for kind in part.kinds),
+        **{n: all_of(n) for n in names},
+    )
 
 
 def rotations(predicted: NDArray[np.floating], true: NDArray[np.floating]) -> Array:

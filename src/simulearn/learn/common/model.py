@@ -34,7 +34,11 @@ class Designs:
         flat: (T, J, 2) mm, joints of the flat grids, the fixed joint at the origin.
         actuators: (T, B) signed ratios.
         material: the material system.
-        reference: name or path of it, as grids have it.
+        reference: name or path of it, or the material itself, as grids have it.
+        materials: (T,) of each design, where they differ.
+        factors: (T, B) by which the released strains of beams differ from the material's, or None.
+        mesh: 0 for answers as of the default mesh, 1 for those of the fine one; None for the finest
+            that a model has learnt.
     """
 
     beams: NDArray[np.int64]
@@ -42,14 +46,28 @@ class Designs:
     flat: NDArray[np.float64]
     actuators: NDArray[np.float64]
     material: Material = field(default_factory=standard)
-    reference: str = "pla-hot-water"
+    reference: str | Material = "pla-hot-water"
+    materials: tuple[Material, ...] = ()
+    factors: NDArray[np.float64] | None = None
+    mesh: float | None = None
 
     def __len__(self) -> int:
         return len(self.flat)
 
     def take(self, which: Any) -> "Designs":
         """Return the designs of an index or mask over T."""
-        return replace(self, flat=self.flat[which], actuators=self.actuators[which])
+        stay = np.arange(len(self))[which]
+        return replace(
+            self,
+            flat=self.flat[which],
+            actuators=self.actuators[which],
+            materials=tuple(self.materials[k] for k in stay) if self.materials else (),
+            factors=None if self.factors is None else self.factors[which],
+        )
+
+    def material_of(self, t: int) -> Material:
+        """Return the material of design t."""
+        return self.materials[t] if self.materials else self.material
 
     @property
     def dimensions(self) -> NDArray[np.float64]:

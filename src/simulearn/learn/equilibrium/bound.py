@@ -1,30 +1,36 @@
 """How far off an answer may be: an estimate in mm that nine designs of ten stay below.
 
 It goes by what the model knows of its own answer: how much the network had to correct, how much
-the beams are strained, how far the grid sags, and its size; by linear quantile regression of
-the logarithm on trials that the model did not learn from. It grows outside the ranges of the
-training.
+the beams are strained, how far the grid sags, its size, its material, and how unlike those of the
+training its beams and joints are. The logarithm of the error's quantile is a linear function of
+these signs, fitted to trials that the model did not learn from, and moved so that the required part
+of other such trials, of which kind they may be, stays below.
 
 R. Koenker, G. Bassett, Regression quantiles, Econometrica 46, 1978; Y. Romano, E. Patterson,
 E. Candes, Conformalized quantile regression, NeurIPS 2019.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs
+from simulearn.learn.equilibrium.learnt import Learnt
 from simulearn.learn.equilibrium.parameters import Prediction
+from simulearn.material import member_of
+from simulearn.mechanics.properties import properties_of, signs_of, stacked
 
 if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
-OUTSIDE = 2.0  # by how much the logarithm grows per width of the training range beyond it
-UNLIKE = 2.5  # times as much for other topologies, see docs/models/equilibrium.md
+OUTSIDE = 2.0  # by how much the logarithm grows per width of a training range beyond it
+RIDGE = 1e-3  # keeps weights small that the trials do not determine
+MOST = 3.0  # standard deviations of a sign beyond its mean that still count
 
 Numbers = NDArray[np.float64]
 
@@ -35,76 +41,167 @@ class ErrorBound:
 
     Attributes:
         weights: (K,) of the signs of error.
-        ranges: (2, 2) least and most grid dimension and beam length of the training, mm.
-        counts: (2,) how many joints and beams its grids had.
+        limits: (2, K) least and most of each sign that counts.
+        ranges: (2, 2) least and most grid dimension and beam length of the training, in
+            thicknesses.
+        usual: (D,) mean of what is seen of half-beams in the training.
+        spread: (D, D) that whitens their difference from it.
     """
 
     weights: Numbers
+    limits: Numbers
     ranges: Numbers
-    counts: Numbers
+    usual: Numbers
+    spread: Numbers
 
-    def bound(self, designs: Designs, prediction: Prediction) -> Numbers:
+    def to_arrays(self) -> dict[str, Numbers]:
+        """Return the arrays by name."""
+        return dict(vars(self))
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "ErrorBound":
+        """Return the estimate of a bundle.
+
+        Raises:
+            InputError: an array is missing.
+        """
+        for field in fields(cls):
+            if field.name not in arrays:
+                raise InputError(f"weight trust.{field.name} is missing")
+        return cls(*(np.asarray(arrays[field.name], np.float64) for field in fields(cls)))
+
+    def bound(self, designs: Designs, prediction: Prediction, learnt: Learnt) -> Numbers:
         """Return the mean vertex error of the last frame that nine of ten stay below: (T,) mm."""
-        log = signs(designs, prediction) @ self.weights + OUTSIDE * beyond(designs, self.ranges)
-        here = (designs.flat.shape[1], len(designs.beams))
-        return np.exp(log) * (1.0 if here == tuple(self.counts) else UNLIKE)
+        signs = signs_of_error(designs, prediction, self.usual, self.spread)
+        log = np.clip(signs, *self.limits) @ self.weights
+        log += OUTSIDE * (beyond(designs, self.ranges) + _material_beyond(designs, learnt))
+        return np.exp(log)
+
+
+def signs_of_error(
+    designs: Designs, prediction: Prediction, usual: Numbers, spread: Numbers
+) -> Numbers:
+    """Return what the estimate goes by: (T, K), the first 1.
+
+    Args:
+        designs: T of them.
+        prediction: of the model.
+        usual: (D,) see `ErrorBound`.
+        spread: (D, D).
+    """
+    size = np.log(designs.dimensions / 90)
+    apart = _log(prediction.apart)
+    count = np.full(len(designs), np.log(len(designs.beams) / 12))
+    far = ((np.asarray(prediction.seen) - usual) @ spread) ** 2  # (T, 2 B, D)
+    unlike = np.log(1e-2 + far.mean(axis=(1, 2)))
+    most = np.log(1e-2 + far.mean(axis=2).max(axis=1))
+    materials = designs.materials or (designs.material,)
+    material = np.abs(signs_of(stacked([properties_of(m) for m in materials]), np).T)
+    material = np.broadcast_to(np.delete(material, MESH, axis=1), (len(designs), len(KEPT)))
+    strain = np.broadcast_to([member_of(m).strain for m in materials], len(designs))
+    rows = [
+        np.ones_like(size), apart, apart**2, _log(prediction.strain), _log(prediction.sag), size,
+        count, unlike, most, np.abs(strain / 0.0926 - 1),
+    ]  # fmt: skip
+    return np.concatenate([np.stack(rows, axis=1), material], axis=1)
+
+
+MESH = 5  # which of a material's signs is the mesh
+KEPT = (0, 1, 2, 3, 4, 6, 7)  # the others
 
 
 def _log(x: Any) -> Numbers:
     return np.log(np.maximum(np.asarray(x), 1e-3))
 
 
-def signs(designs: Designs, prediction: Prediction) -> Numbers:
-    """Return what the estimate goes by: (T, 6)."""
-    apart, size = _log(prediction.apart), np.log(designs.dimensions / 90)
-    rows = [
-        np.ones_like(size),
-        apart,
-        apart**2,
-        _log(prediction.strain),
-        _log(prediction.sag),
-        size,
-    ]
-    return np.stack(rows, axis=1)
+def fitted_weights(signs: Numbers, error: Numbers, part: float = PART) -> Numbers:
+    """Return the weights (K,) with which a part of the errors (T,) lies below exp(signs weights).
+
+    The least pinball loss, as a linear programme, with a small price on each weight's size.
+    """
+    from scipy.optimize import linprog
+
+    count, many = signs.shape
+    log = np.log(np.maximum(error, 1e-6))
+    price = RIDGE * count * np.r_[0.0, signs[:, 1:].std(axis=0)]
+    # Weights above and below zero, then what is missed above and below.
+    cost = np.concatenate([price, price, np.full(count, part), np.full(count, 1 - part)])
+    equal = np.hstack([signs, -signs, np.eye(count), -np.eye(count)])
+    found = linprog(cost, A_eq=equal, b_eq=log, bounds=(0, None), method="highs").x
+    return np.asarray(found[:many] - found[many : 2 * many])
 
 
-def error_bound_of(signs: Numbers, error: Numbers, learnt: "Sequence[Batch]") -> ErrorBound:
+def error_bound_of(
+    signs: Numbers,
+    error: Numbers,
+    others: tuple[Numbers, Numbers],
+    seen: tuple[Numbers, Numbers],
+    learnt: "Sequence[Batch]",
+) -> ErrorBound:
     """Return the estimate for a model.
 
     Args:
         signs: (T, K) of trials that the model did not learn from, the first sign 1.
         error: (T,) of the model's answers to them, mm.
+        others: signs (N, K) and errors (N,) of those that count for the coverage.
+        seen: usual (D,) and spread (D, D) of half-beams; see `seen_of`.
         learnt: the trials it learnt from.
     """
-    from scipy.optimize import linprog
-
     from simulearn.dataset.statistics import beam_lengths
 
-    count, many = signs.shape
-    log = np.log(np.maximum(error, 1e-6))
-    # Pinball loss as a linear programme: coefficients, then what is missed above and below.
-    cost = np.concatenate([np.zeros(many), np.full(count, PART), np.full(count, 1 - PART)])
-    equal = np.hstack([signs, np.eye(count), -np.eye(count)])
-    bounds = [(None, None)] * many + [(0, None)] * (2 * count)
-    weights = linprog(cost, A_eq=equal, b_eq=log, bounds=bounds, method="highs").x[:many]
+    middle, width = signs.mean(axis=0), signs.std(axis=0)
+    limits = np.stack([middle - MOST * width, middle + MOST * width])
+    weights = fitted_weights(np.clip(signs, *limits), error)
     # As many below as required, counting the next trial to come.
-    weights[0] += np.quantile(log - signs @ weights, min(1.0, PART * (count + 1) / count))
-    size = np.concatenate([b.dimensions for b in learnt])
-    length = np.concatenate([beam_lengths(b).ravel() for b in learnt])
-    ranges = [[x.min(), x.max()] for x in (size, length)]
-    counts = (learnt[0].flat.shape[1], len(learnt[0].beams))
-    return ErrorBound(weights, np.array(ranges, np.float64), np.array(counts, np.float64))
+    left = np.log(np.maximum(others[1], 1e-6)) - np.clip(others[0], *limits) @ weights
+    weights[0] += np.quantile(left, min(1.0, PART * (len(left) + 1) / len(left)))
+    thick = np.concatenate([_thickness(b) for b in learnt])
+    size = np.concatenate([b.dimensions for b in learnt]) / thick
+    length = np.concatenate([(beam_lengths(b) / _thickness(b)[:, None]).ravel() for b in learnt])
+    ranges = [[x.min() for x in (size, length)], [x.max() for x in (size, length)]]
+    return ErrorBound(weights, limits, np.array(ranges, np.float64), *seen)
+
+
+def seen_of(halves: Sequence[Numbers]) -> tuple[Numbers, Numbers]:
+    """Return the mean (D,) of what is seen of half-beams, and what whitens the difference from it.
+
+    Args:
+        halves: arrays (..., D).
+    """
+    rows = np.concatenate([x.reshape(-1, x.shape[-1]) for x in halves])
+    usual = rows.mean(axis=0)
+    values, vectors = np.linalg.eigh(np.cov((rows - usual).T) + 1e-6 * np.eye(rows.shape[1]))
+    return usual, vectors / np.sqrt(np.maximum(values, 1e-3))
+
+
+def _thickness(batch: "Batch") -> Numbers:
+    materials = batch.materials or (batch.material,) * len(batch)
+    return np.array([material.section.thickness for material in materials])
 
 
 def beyond(designs: Designs, ranges: Numbers) -> Numbers:
-    """Return how far designs (T,) are outside the training ranges, in widths of the ranges."""
+    """Return how far designs (T,) are outside the training ranges, in widths of the ranges.
+
+    Args:
+        designs: T of them.
+        ranges: (2, 2) least and most of dimension and beam length, in thicknesses.
+    """
     ends = designs.flat[:, designs.beams]
-    length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1)
-    size = designs.dimensions
+    materials = designs.materials or (designs.material,)
+    thick = np.array([material.section.thickness for material in materials])
+    length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1) / thick[:, None]
+    size = designs.dimensions / thick
     far = np.zeros(len(designs))
     for (least, most), low, high in (
-        (ranges[0], size, size),
-        (ranges[1], length.min(axis=1), length.max(axis=1)),
+        (ranges[:, 0], size, size),
+        (ranges[:, 1], length.min(axis=1), length.max(axis=1)),
     ):
         far += (np.maximum(least - low, 0) + np.maximum(high - most, 0)) / (most - least)
     return far
+
+
+def _material_beyond(designs: Designs, learnt: Learnt) -> Numbers:
+    """Return how far the materials (T,) are outside what was learnt, in widths of the ranges."""
+    materials = designs.materials or (designs.material,)
+    far = [sum(min(v[3], 10.0) for v in learnt.beyond(m).values()) for m in materials]
+    return np.broadcast_to(np.array(far, np.float64), (len(designs),))

@@ -29,6 +29,8 @@ class EquilibriumConfig(RunConfig):
     Attributes:
         kind: of the model; "beams" has no network.
         calibration: the data set that the error estimate is fitted to, or none.
+        fine: a further data set to learn from, by the fine mesh, or none.
+        fine_share: how many times as often its trials are drawn as others.
         width, message, rounds: of the network; see `parameters.network_shapes`.
         law: fits the section.
         network: fits the network that corrects it.
@@ -38,6 +40,8 @@ class EquilibriumConfig(RunConfig):
 
     kind: Literal["equilibrium", "beams"]
     calibration: str | None = None
+    fine: str | None = None
+    fine_share: Positive = 3.0
     width: Count = 64
     message: Count = 16
     rounds: Count = 2

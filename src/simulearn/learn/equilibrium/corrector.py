@@ -32,6 +32,7 @@ from simulearn.learn.equilibrium.parameters import (
 )
 from simulearn.mechanics.forces import FLIP, BeamState
 from simulearn.mechanics.poses import Array
+from simulearn.mechanics.properties import Properties, signs_of
 from simulearn.mechanics.topology import FlatGeometry, Topology
 
 
@@ -75,6 +76,7 @@ def features_of(
     twist: Array,
     s: Array,
     gravity: Array,
+    p: Properties,
 ) -> Features:
     """Return the inputs of the network for a grid in a state of the section model.
 
@@ -86,6 +88,7 @@ def features_of(
         twist: (2, B, 6) how far the halves are from rest there.
         s: released fraction.
         gravity: multiple of gravity.
+        p: numbers of the material.
     """
     size, sign = jnp.abs(ratio), jnp.where(ratio < 0, -1.0, 1.0)
 
@@ -93,7 +96,7 @@ def features_of(
         return jnp.stack([x, x])
 
     held = (topology.ends == topology.fixed).astype(twist.dtype)
-    valence = jnp.zeros(len(geometry.area)).at[topology.ends].add(1.0)
+    valence = jnp.zeros(len(geometry.area)).at[topology.ends].add(topology.real)
     one = jnp.ones_like(twist[..., 0])
     # Lengths as in a section of the reference width.
     length, reach = geometry.length / geometry.scale, geometry.reach / geometry.scale
@@ -114,9 +117,13 @@ def features_of(
         "far held over": held[::-1] * sign,
         "area": area[topology.ends] / 30 - 2,
         "valence": valence[topology.ends] - 3,
-        "released": one * (2 * s - 1),
-        "creep": one * (gravity - 1) * 8,
+        "released": one * (2 * s * p.strain - 1),
+        "creep": one * (gravity - 1) * 4,
     }
+    material = iter(signs_of(p, jnp))
+    for name in PLAIN[len(plain) :]:
+        value = next(material) * one
+        plain[name] = value * sign if name == "curl over" else value
     flip = jnp.where(sign[:, None] < 0, TWIST_FLIP, 1.0)
     own = twist / _scaled(TWIST_SIZE, geometry.scale) * flip
     above = state.joints.R[topology.ends][..., 2, :]
@@ -213,7 +220,7 @@ def _around(topology: Topology, messages: Array, angle: Array, sign: Array) -> A
     for k in range(1, HARMONICS + 1):
         waves += [jnp.cos(k * angle), jnp.sin(k * angle)]
     wave = jnp.stack(waves, -1)  # (2, B, 1 + 2 H)
-    both = jnp.stack([jnp.ones_like(sign), sign], -1)
+    both = jnp.stack([jnp.ones_like(sign), sign], -1) * topology.real.astype(sign.dtype)[:, None]
     waves_of = messages[..., None, None, :] * wave[..., :, None, None] * both[..., None, :, None]
     joints = topology.before.shape[0]
     total = jnp.zeros((joints, *waves_of.shape[2:]), messages.dtype).at[topology.ends].add(waves_of)

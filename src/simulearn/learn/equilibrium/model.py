@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs, Frames, Last
 from simulearn.learn.equilibrium.bound import ErrorBound
+from simulearn.learn.equilibrium.learnt import Learnt
 from simulearn.learn.equilibrium.native import Networks, networks_of, predict
 from simulearn.learn.equilibrium.parameters import (
     Parameters,
@@ -25,7 +26,8 @@ from simulearn.learn.equilibrium.parameters import (
 )
 from simulearn.material import Material
 
-BOUND = ("trust.weights", "trust.ranges", "trust.counts")  # names in the files of bundles
+BOUND = "trust."  # before the names of the arrays of a bound in the files of bundles
+LEARNT = "learnt."  # the same of the ranges
 CONVERGED = 0.1  # mm, the last motion of an iteration at most
 LARGE = 1000  # designs from which on a GPU is worth its compilation
 
@@ -36,7 +38,8 @@ class Equilibrium:
 
     Attributes:
         parameters: fitted.
-        material: that they were fitted to.
+        material: that they were fitted to, or the one whose family they were fitted to.
+        learnt: ranges of the materials and meshes that they were fitted to.
         sizes: width, message and rounds of the networks.
         bound: the error estimate, or None.
         kind: "equilibrium" or "beams".
@@ -44,6 +47,7 @@ class Equilibrium:
 
     parameters: Parameters
     material: Material
+    learnt: Learnt
     sizes: tuple[int, int, int] = (64, 16, 2)
     bound: ErrorBound | None = None
     kind: str = "equilibrium"
@@ -51,7 +55,7 @@ class Equilibrium:
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology; see `learn.common.model.Model`."""
         prediction = self.predict(designs)
-        bound = None if self.bound is None else self.bound.bound(designs, prediction)
+        bound = None if self.bound is None else self.bound.bound(designs, prediction, self.learnt)
         return Frames(
             np.asarray(prediction.joints),
             np.asarray(prediction.sections),
@@ -74,12 +78,17 @@ class Equilibrium:
         if len(designs) >= LARGE and has_gpu():
             from simulearn.learn.equilibrium.compiled import predict as on_gpu
 
-            return on_gpu(self.parameters, self.material, designs, last)
-        return predict(self.parameters, self.material, designs, last, networks=self._networks)
+            return on_gpu(self.parameters, designs, self.mesh_of(designs), last)
+        mesh = self.mesh_of(designs)
+        return predict(self.parameters, designs, last, networks=self._networks, mesh=mesh)
+
+    def mesh_of(self, designs: Designs) -> float:
+        """Return which mesh answers are to be as of: 0 the default one, 1 the fine one."""
+        return self.learnt.finest if designs.mesh is None else designs.mesh
 
     @cached_property
     def _networks(self) -> Networks:
-        return networks_of(self.parameters, self.material)
+        return networks_of(self.parameters)
 
     def config(self) -> dict[str, Any]:
         """Return the architecture."""
@@ -87,10 +96,11 @@ class Equilibrium:
         return {"width": width, "message": message, "rounds": rounds}
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Return section model, networks and error estimate by name."""
+        """Return law of sections, networks, what was learnt and error estimate by name."""
         arrays = named_arrays(self.parameters)
+        arrays |= {f"{LEARNT}{key}": value for key, value in self.learnt.to_arrays().items()}
         if self.bound is not None:
-            arrays |= {f"trust.{key}": value for key, value in vars(self.bound).items()}
+            arrays |= {f"{BOUND}{key}": value for key, value in self.bound.to_arrays().items()}
         return arrays
 
     @classmethod
@@ -118,19 +128,25 @@ class Equilibrium:
                 raise InputError(f"weight {name} is missing")
             if arrays[name].shape != shape:
                 raise InputError(f"weight {name} has the shape {arrays[name].shape}, not {shape}")
-        bound = {name: arrays[name] for name in BOUND if name in arrays}
-        if 0 < len(bound) < len(BOUND):
-            raise InputError(f"weight {next(n for n in BOUND if n not in bound)} is missing")
-        if extra := arrays.keys() - expected.keys() - bound.keys():
+        others = {part: _part(arrays, part) for part in (BOUND, LEARNT)}
+        if extra := {
+            name for name in arrays.keys() - expected.keys() if not name.startswith((BOUND, LEARNT))
+        }:
             raise InputError(f"weight {min(extra)} does not belong to this architecture")
         typed = {name: np.asarray(arrays[name], dtype) for name, (_, dtype) in expected.items()}
         return cls(
             parameters_of(typed, rounds),
             material,
+            Learnt.from_arrays(others[LEARNT]),
             (width, message, rounds),
-            ErrorBound(*(np.asarray(x, np.float64) for x in bound.values())) if bound else None,
+            ErrorBound.from_arrays(others[BOUND]) if others[BOUND] else None,
             "equilibrium" if network else "beams",
         )
+
+
+def _part(arrays: Mapping[str, NDArray[Any]], begin: str) -> dict[str, NDArray[Any]]:
+    """Return the arrays whose names begin so, by the rest of their names."""
+    return {k.removeprefix(begin): v for k, v in arrays.items() if k.startswith(begin)}
 
 
 LARGEST = 4096  # width, message length or rounds of a network

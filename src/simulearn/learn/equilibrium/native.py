@@ -20,6 +20,7 @@ from simulearn.learn.equilibrium.parameters import (
     FACE,
     MIDDLE,
     REST,
+    SEEN,
     STRESSES,
     TWIST_FLIP,
     TWIST_SIZE,
@@ -29,10 +30,10 @@ from simulearn.learn.equilibrium.parameters import (
     Parameters,
     Prediction,
 )
-from simulearn.material import Material
 from simulearn.mechanics.kernels.geometry import set_corners
-from simulearn.mechanics.model import REFERENCE_WIDTH
+from simulearn.mechanics.model import REFERENCE_WIDTH, SectionLaw, section_of
 from simulearn.mechanics.path import (
+    COEFFICIENTS,
     TOLERANCE,
     Grid,
     Path,
@@ -41,38 +42,88 @@ from simulearn.mechanics.path import (
     schedule_frames,
     trace,
 )
+from simulearn.mechanics.properties import (
+    REFERENCE_STIFFNESS,
+    Properties,
+    properties_of,
+    signs_of,
+    stacked,
+)
 from simulearn.schedule import FRAMES
 
 Numbers = NDArray[np.float64]
 
 STOPS = np.array([0, 2, 4, 6, 8, 10, 11])  # frames on the way to the last alone
+LENGTHS = np.zeros(len(CORRECTIONS.size), np.bool_)  # which outputs are lengths
+LENGTHS[REST][:3] = LENGTHS[FACE] = LENGTHS[MIDDLE] = True
 PORTIONS = 8  # that each core's share of a batch is divided into, at least
 
 
 class Networks(NamedTuple):
-    """A model's parameters as the kernels take them; one for all designs."""
+    """A model's networks as the kernels take them; one for all designs and materials."""
 
-    section: Numbers
     corrections: Layers | None
     stress: Layers | None
-    scale: float
 
 
-def networks_of(parameters: Parameters, material: Material) -> Networks:
-    """Return a model's parameters as the kernels take them."""
-    scale = material.section.width / REFERENCE_WIDTH
-    lengths = np.ones(len(CORRECTIONS.size))
-    lengths[REST][:3] = lengths[FACE] = lengths[MIDDLE] = scale
+class Print(NamedTuple):
+    """What a design is printed of, as the kernels take it.
+
+    Attributes:
+        properties: numbers of the material.
+        section: (B + 1, coefficients) of the beams, and of joints.
+        strain: (B,) released strain of the beams' active halves over that of the reference.
+        signs: what networks see of the material; see `mechanics.properties.signs_of`.
+    """
+
+    properties: Properties
+    section: Numbers
+    strain: Numbers
+    signs: NDArray[np.float32]
+
+
+def networks_of(parameters: Parameters) -> Networks:
+    """Return a model's networks as the kernels take them."""
     corrections, stress = parameters.network, parameters.stress
     return Networks(
-        coefficients(parameters.section_model),
-        None if corrections is None else _layers(corrections, CORRECTIONS, lengths, scale),
-        None if stress is None else _layers(stress, STRESSES, 1.0, scale),
-        scale,
+        None if corrections is None else _layers(corrections, CORRECTIONS),
+        None if stress is None else _layers(stress, STRESSES),
     )
 
 
-def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) -> Layers:
+def prints_of(law: SectionLaw, designs: Designs, mesh: float) -> list[Print]:
+    """Return what each of the designs is printed of.
+
+    Args:
+        law: of sections.
+        designs: T of them.
+        mesh: 0 for answers as of the default mesh, 1 for those of the fine one.
+    """
+    materials = designs.materials or (designs.material,)
+    each = [properties_of(material, mesh) for material in materials]
+    beams, count = len(designs.beams), len(designs)
+    many = stacked(each)
+    if designs.factors is None:
+        columns = coefficients(section_of(law, many)).T
+        sections = [np.broadcast_to(row, (beams + 1, len(row))) for row in columns]
+    else:  # joints as the material says
+        factors = np.concatenate([designs.factors, np.ones((count, 1))], axis=1)
+        if len(each) < count:
+            each = each * count
+            many = stacked(each)
+        spread = Properties(*(np.repeat(x, beams + 1) for x in many))
+        spread = spread._replace(strain=spread.strain * factors.ravel())
+        sections = list(coefficients(section_of(law, spread)).T.reshape(count, beams + 1, -1))
+    factors = np.ones((len(each), beams)) if designs.factors is None else designs.factors
+    signs = np.asarray(signs_of(many, np).T, np.float32)
+    prints = [
+        Print(p, np.ascontiguousarray(section), p.strain * factor, np.ascontiguousarray(sign))
+        for p, section, factor, sign in zip(each, sections, factors, signs, strict=True)
+    ]
+    return prints if len(prints) == count else prints * count
+
+
+def _layers(weights: NetworkWeights, heads: Heads) -> Layers:
     def stacked(k: int, part: int) -> NDArray[np.float32]:
         return np.stack([np.asarray(layers[k][part], np.float32) for layers in weights.rounds])
 
@@ -89,8 +140,8 @@ def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) ->
         single(VALUES_MIRROR),
         heads.mirror[0].astype(np.int64), single(heads.mirror[1]),
         heads.flip[0].astype(np.int64), single(heads.flip[1]),
-        np.asarray(heads.size * factor, np.float64),
-        TWIST_SIZE * np.where(np.arange(6) < 3, scale, 1.0),
+        np.asarray(heads.size, np.float64),
+        TWIST_SIZE.astype(np.float64),
         np.asarray(TWIST_FLIP, np.float64),
     ]  # fmt: skip
     return Layers(*arrays)
@@ -98,23 +149,24 @@ def _layers(weights: NetworkWeights, heads: Heads, factor: Any, scale: float) ->
 
 def predict(
     parameters: Parameters,
-    material: Material,
     designs: Designs,
     last: bool = False,
     tolerance: float = TOLERANCE,
     networks: Networks | None = None,
+    mesh: float = 1.0,
 ) -> Prediction:
     """Return all twelve frames of designs of one topology, stacked along T, or the last alone.
 
     Args:
         parameters: fitted.
-        material: that they were fitted to.
         designs: T of them.
         last: whether only the last frame is needed.
         tolerance: of the last motion of an iteration, mm.
         networks: the parameters as the kernels take them, where they are at hand.
+        mesh: 0 for answers as of the default mesh, 1 for those of the fine one.
     """
-    networks = networks or networks_of(parameters, material)
+    networks = networks or networks_of(parameters)
+    prints = prints_of(parameters.law, designs, mesh)
     count, joints, beams = len(designs), designs.flat.shape[1], len(designs.beams)
     stress = networks.stress is not None and not last
     out = _blank(count, 1 if last else FRAMES, joints, beams, stress)
@@ -125,9 +177,9 @@ def predict(
             own = tuple(x[t] for x in corners)
             grid = grid_of(
                 designs.beams, designs.fixed, designs.flat[t], designs.actuators[t], own,
-                networks.section, material,
+                prints[t].section, prints[t].properties,
             )  # fmt: skip
-            _predict(networks, material, grid, last, tolerance, out, t)
+            _predict(networks, prints[t], grid, last, tolerance, out, t)
 
     size = max(1, count // (PORTIONS * cores()))
     parts = [range(a, min(a + size, count)) for a in range(0, count, size)]
@@ -153,12 +205,13 @@ def _blank(count: int, frames: int, joints: int, beams: int, stress: bool) -> Pr
         stable=np.zeros(count, np.bool_),
         left_balance=np.zeros(count, np.bool_),
         snaps=[() for _ in range(count)],
+        seen=np.zeros((count, 2 * beams, SEEN)),
     )
 
 
 def _predict(
     networks: Networks,
-    material: Material,
+    printed: Print,
     grid: Grid,
     last: bool,
     tolerance: float,
@@ -166,24 +219,26 @@ def _predict(
     t: int,
 ) -> None:
     """Set the prediction of a design."""
-    beams = len(grid.ratio)
+    beams, p = len(grid.ratio), printed.properties
+    scale = p.width / REFERENCE_WIDTH
     which = STOPS if last else slice(None)
-    frames = schedule_frames(beams, material, which=which)
+    frames = schedule_frames(beams, p.creep, which=which)
     first = trace(grid, frames, small_steps=not last, tolerance=tolerance)
     final, warping = first, np.zeros((len(frames.released), 2, beams, 24))
     begin = len(frames.released) - 1 if last else 1
     valence = np.bincount(grid.layout.ends.ravel(), minlength=len(grid.geometry.area)).astype(float)
 
-    def output(layers: Layers, path: Path, begin: int) -> Numbers:
+    def output(layers: Layers, path: Path, begin: int, size: Any) -> Numbers:
         values = np.zeros((len(frames.released), 2, beams, len(layers.size)))
         outputs(
             layers, grid.geometry, grid.layout.ends, grid.layout.fixed, grid.ratio, valence, path.R,
-            path.twists, frames.released, frames.gravity, networks.scale, begin, values,
+            path.twists, frames.released, frames.gravity, scale, printed.signs, printed.strain,
+            begin, values,
         )  # fmt: skip
-        return values
+        return values * size
 
     if networks.corrections is not None and first.ended:
-        values = output(networks.corrections, first, begin)
+        values = output(networks.corrections, first, begin, np.where(LENGTHS, scale, 1.0))
         corrections = np.ascontiguousarray(values[..., :12])
         warping = np.ascontiguousarray(values[..., 12:])
         if last:
@@ -193,7 +248,7 @@ def _predict(
             final = trace(grid, corrected, first, tolerance=tolerance)
     if last and not (first.ended and final.ended):  # frame by frame more converge
         rollout = _blank(1, FRAMES, len(grid.geometry.area), beams, False)
-        _predict(networks, material, grid, False, tolerance, rollout, 0)
+        _predict(networks, printed, grid, False, tolerance, rollout, 0)
         for to, value in zip(out, rollout, strict=True):
             if value is not None:
                 to[t] = value[0][-1:] if np.ndim(value[0]) > 1 else value[0]
@@ -208,10 +263,10 @@ def _predict(
     )  # fmt: skip
     out.joints[t], out.sections[t] = (x[-1:] if last else x for x in (joints, sections))
     if out.stress is not None and networks.stress is not None:
-        shrinkage = material.shrinkage
+        stiff = p.stiffness / REFERENCE_STIFFNESS
         stress_in_space(
-            output(networks.stress, final, 1), grid.geometry, grid.layout.ends, grid.ratio, final.R,
-            frames.released, shrinkage.stress_active, shrinkage.stress_passive, 0, out.stress[t],
+            output(networks.stress, final, 1, stiff), grid.geometry, grid.layout.ends, grid.ratio,
+            final.R, frames.released, p.along, p.across, 0, out.stress[t],
         )  # fmt: skip
     many = len(grid.geometry.area)
     apart = final.p[-1, :many] - first.p[-1, :many]
@@ -223,6 +278,33 @@ def _predict(
     out.stable[t] = True
     out.left_balance[t] = first.left_balance or final.left_balance
     out.snaps[t] = tuple(final.snaps)
+    out.seen[t] = seen_halves(grid, valence, scale)
+
+
+def seen_in(designs: Designs) -> Numbers:
+    """Return what is seen of the halves of flat designs: (T, 2 B, SEEN)."""
+    corners, none = corner_topology(designs.beams, designs.flat), np.zeros(COEFFICIENTS)
+    rows = []
+    for t in range(len(designs)):
+        p = properties_of(designs.material_of(t))
+        own = tuple(x[t] for x in corners)
+        grid = grid_of(
+            designs.beams, designs.fixed, designs.flat[t], designs.actuators[t], own, none, p
+        )
+        valence = np.bincount(designs.beams.ravel(), minlength=len(designs.flat[t])).astype(float)
+        rows.append(seen_halves(grid, valence, p.width / REFERENCE_WIDTH))
+    return np.stack(rows)
+
+
+def seen_halves(grid: Grid, valence: Numbers, scale: float) -> Numbers:
+    """Return what is seen of a flat grid's halves: (2 B, SEEN); see `parameters.Prediction`."""
+    g, ends = grid.geometry, grid.layout.ends
+    size, length = np.abs(grid.ratio), g.length / scale
+    rows = [
+        np.stack([length] * 2), np.stack([size * length] * 2), g.reach / scale, g.skew / scale,
+        g.reach[::-1] / scale, g.skew[::-1] / scale, g.area[ends] / scale**2, valence[ends],
+    ]  # fmt: skip
+    return np.stack(rows, axis=-1).reshape(-1, SEEN)
 
 
 def _last_corrected(

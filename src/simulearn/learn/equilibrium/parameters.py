@@ -1,6 +1,6 @@
 """What is fitted in a model that solves for equilibrium: its arrays, their shapes and names.
 
-The section model, the network that corrects it, and the network for stresses. The inputs and
+The law of sections, the network that corrects it, and the network for stresses. The inputs and
 outputs of the networks are listed here with how each changes in a mirrored design, and in one that
 is turned upside down.
 """
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from simulearn.mechanics.model import SectionModel
+from simulearn.mechanics.model import SECTION_SHAPES, TERMS, SectionLaw
 
 TWIST_MIRROR = np.array([1, -1, 1, -1, 1, -1.0])
 TWIST_FLIP = np.array([1, 1, -1, -1, -1, 1.0])
@@ -89,6 +89,7 @@ ODD = ("skew", "far skew")
 PLAIN = (
     "length", "ratio", "idle", "passive", "active", "reach", "skew", "far reach", "far skew",
     "held", "held over", "far held", "far held over", "area", "valence", "released", "creep",
+    "passive ratio", "joint ratio", "shell ratio", "rim", "slender", "mesh", "curl over", "weight",
 )  # fmt: skip
 VALUES_MIRROR = np.concatenate(
     [
@@ -115,9 +116,9 @@ class NetworkWeights(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    """All that is fitted: the section model, the network that corrects it, the one for stresses."""
+    """All that is fitted: the law of sections, the network that corrects it, that for stresses."""
 
-    section_model: SectionModel
+    law: SectionLaw
     network: NetworkWeights | None = None
     stress: NetworkWeights | None = None
 
@@ -137,6 +138,8 @@ class Prediction(NamedTuple):
         left_balance: () whether an unstable equilibrium was left, so that a mirrored shape exists,
             or None where it is not known.
         snaps: sudden motions of each design, or None where they are not known.
+        seen: (2 B, SEEN) length, actuator, faces and joint of each half in sections of the
+            reference width, by which designs are like or unlike those of the training.
     """
 
     joints: Any
@@ -149,13 +152,10 @@ class Prediction(NamedTuple):
     stable: Any = None
     left_balance: Any = None
     snaps: Any = None
+    seen: Any = None
 
 
-STORED = {"section_model": "law"}  # names in the files of bundles, where they differ
-
-SECTION_SHAPES = SectionModel(
-    (2,), (2,), (2,), (), (2,), (2,), (2,), (2, 2), (3, 6), (2, 6)
-)  # double precision
+SEEN = 8
 
 
 def network_shapes(heads: Heads, width: int, message: int, rounds: int) -> NetworkWeights:
@@ -186,15 +186,15 @@ def named_arrays(parameters: Parameters) -> dict[str, np.ndarray]:
     arrays = {}
     for part, tree in parameters._asdict().items():
         if tree is not None:
-            name = STORED.get(part, part)
-            arrays.update({f"{name}.{key}": np.asarray(x) for key, x in _leaves(tree)})
+            arrays.update({f"{part}.{key}": np.asarray(x) for key, x in _leaves(tree)})
     return arrays
 
 
 def shapes_by_name(network: bool, stress: bool, sizes: tuple[int, int, int]) -> dict[str, Any]:
     """Return (shape, type) of each array that a model with these parts has, by name."""
     shapes: dict[str, Any] = {
-        f"law.{name}": (shape, np.float64) for name, shape in SECTION_SHAPES._asdict().items()
+        f"law.{name}": ((TERMS, *shape), np.float64)  # double precision
+        for name, shape in SECTION_SHAPES._asdict().items()
     }
     for part, heads, present in (
         ("network", CORRECTIONS, network),
@@ -208,7 +208,7 @@ def shapes_by_name(network: bool, stress: bool, sizes: tuple[int, int, int]) -> 
 
 def parameters_of(arrays: dict[str, np.ndarray], rounds: int) -> Parameters:
     """Return the parameters of arrays by name; see `shapes_by_name` for what there must be."""
-    section = SectionModel(*(arrays[f"law.{name}"] for name in SectionModel._fields))
+    law = SectionLaw(*(arrays[f"law.{name}"] for name in SectionLaw._fields))
 
     def network(part: str) -> NetworkWeights | None:
         if not any(name.startswith(f"{part}.") for name in arrays):
@@ -223,7 +223,7 @@ def parameters_of(arrays: dict[str, np.ndarray], rounds: int) -> Parameters:
             [layer(f"decode.{k}") for k in range(2)],
         )
 
-    return Parameters(section, network("network"), network("stress"))
+    return Parameters(law, network("network"), network("stress"))
 
 
 def _is_shape(tree: Any) -> bool:

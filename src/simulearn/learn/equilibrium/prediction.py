@@ -10,12 +10,13 @@ import jax.numpy as jnp
 
 from simulearn.learn.equilibrium import corrector, stresses
 from simulearn.learn.equilibrium.parameters import NetworkWeights, Parameters, Prediction
-from simulearn.material import Material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.equilibrium import solve_equilibrium
 from simulearn.mechanics.forces import BeamState, HalfBeams, each, twists
+from simulearn.mechanics.model import section_of
 from simulearn.mechanics.poses import Array, Pose, exp_se3
-from simulearn.mechanics.rollout import RELEASED, Loads, every_frame, rollout
+from simulearn.mechanics.properties import REFERENCE_STIFFNESS, Properties
+from simulearn.mechanics.rollout import RELEASED, every_frame, loads, rollout
 from simulearn.mechanics.topology import FlatGeometry, Topology
 
 TOLERANCE = 0.05  # mm, of the last motion; what is left after it is far less
@@ -88,8 +89,7 @@ def predict(
     topology: Topology,
     geometry: FlatGeometry,
     ratio: Array,
-    load: Loads,
-    material: Material,
+    p: Properties,
     tolerance: float = TOLERANCE,
     last: bool = False,
 ) -> Prediction:
@@ -100,12 +100,12 @@ def predict(
         topology: how the grid hangs together.
         geometry: the flat grid.
         ratio: (B,) signed actuator ratios.
-        load: weights.
-        material: for the printed-in stress.
+        p: numbers of the material.
         tolerance: of the last motion of an iteration, mm.
         last: whether only the last frame is needed, which costs half.
     """
-    section_model, network, stress = parameters
+    law, network, stress = parameters
+    section_model, load = section_of(law, p, jnp), loads(p)
     released, gravity = jnp.array(RELEASED), load.gravity
     bare = every_frame(section_model, topology, geometry, ratio, load)
     if last:
@@ -125,7 +125,7 @@ def predict(
         def correct(
             state: BeamState, twist: Array, s: Array, gravity: Array
         ) -> corrector.Corrections:
-            features = corrector.features_of(topology, geometry, ratio, state, twist, s, gravity)
+            features = corrector.features_of(topology, geometry, ratio, state, twist, s, gravity, p)
             return corrector.corrections(network, topology, features)
 
         corrections = jax.vmap(correct)(begun, strains, released, gravity)
@@ -144,11 +144,11 @@ def predict(
     joints, sections = jax.vmap(corners)(ended, released, corrections.face, corrections.middle)
     strained = None
     if stress is not None:
-        printed = stresses.printed(material, geometry, ratio)
+        printed = stresses.printed(p, geometry, ratio)
 
         def strain(half_beams: HalfBeams, state: BeamState, s: Array, gravity: Array) -> Array:
             own = (1 - s) * printed + elastic(
-                stress, topology, geometry, ratio, half_beams, state, s, gravity
+                stress, topology, geometry, ratio, half_beams, state, s, gravity, p
             )
             return stresses.in_space(topology, geometry, state, own)
 
@@ -173,6 +173,7 @@ def elastic(
     state: BeamState,
     s: Array,
     gravity: Array,
+    p: Properties,
 ) -> Array:
     """Return the elastic stress (2, B, 2, 4, 6) that the network predicts in the halves' axes, MPa.
 
@@ -185,8 +186,10 @@ def elastic(
         state: the poses.
         s: released fraction.
         gravity: multiple of gravity.
+        p: numbers of the material.
     """
     features = corrector.features_of(
-        topology, geometry, ratio, state, twists(topology, bare, state), s, gravity
+        topology, geometry, ratio, state, twists(topology, bare, state), s, gravity, p
     )
-    return corrector.stresses(network, topology, features)
+    stiff = p.stiffness / REFERENCE_STIFFNESS
+    return stiff * corrector.stresses(network, topology, features)

@@ -18,9 +18,8 @@ from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium.model import CONVERGED, Equilibrium
 from simulearn.learn.equilibrium.parameters import Parameters
 from simulearn.learn.equilibrium.prediction import TOLERANCE, predict
-from simulearn.material import Material
 from simulearn.mechanics.poses import Array
-from simulearn.mechanics.rollout import loads
+from simulearn.mechanics.properties import Properties, properties_of
 from simulearn.mechanics.topology import Topology, flat_geometry, topologies
 
 Cost = Callable[[Array, Array, Any], Array]
@@ -64,36 +63,44 @@ def slopes(
     """
     make_room()
     topology = topologies(designs.beams, designs.fixed, designs.flat)
-    kernel = _kernel(model.material, cost, tolerance)
+    kernel = _kernel(cost, tolerance)
+    mesh = model.mesh_of(designs)
     parameters = model.parameters._replace(stress=None)
     parts = []
     for t in range(len(designs)):
-        one = Topology(*(x[t] for x in topology))
-        parts.append(kernel(parameters, one, designs.flat[t], designs.actuators[t], given))
+        one = Topology(*(np.asarray(x)[t] for x in topology))
+        p = properties_of(designs.material_of(t), mesh)
+        parts.append(kernel(parameters, one, designs.flat[t], designs.actuators[t], p, given))
     values: list[Any] = [np.stack([np.asarray(part[k]) for part in parts]) for k in range(4)]
     return Slopes(values[0], values[1], values[2], values[3] < CONVERGED)
 
 
 @lru_cache(maxsize=16)
-def _kernel(material: Material, cost: Cost, tolerance: float) -> Any:
-    """Return the compiled function: parameters, skeleton, joints, ratios, given -> slopes."""
-    load = loads(material)
+def _kernel(cost: Cost, tolerance: float) -> Any:
+    """Return the compiled function: parameters, topology, joints, ratios, material, given."""
 
     def value(
-        design: tuple[Array, Array], parameters: Parameters, topology: Topology, given: Any
+        design: tuple[Array, Array],
+        parameters: Parameters,
+        topology: Topology,
+        p: Properties,
+        given: Any,
     ) -> tuple[Array, Array]:
-        geometry = flat_geometry(topology, design[0], material.section)
-        prediction = predict(
-            parameters, topology, geometry, design[1], load, material, tolerance, last=True
-        )
+        geometry = flat_geometry(topology, design[0], p)
+        prediction = predict(parameters, topology, geometry, design[1], p, tolerance, last=True)
         return cost(prediction.joints[-1], prediction.sections[-1], given), prediction.motion
 
     @jax.jit
     def kernel(
-        parameters: Parameters, topology: Topology, joints: Array, ratio: Array, given: Any
+        parameters: Parameters,
+        topology: Topology,
+        joints: Array,
+        ratio: Array,
+        p: Properties,
+        given: Any,
     ) -> Any:
         both, slope = jax.value_and_grad(value, has_aux=True)(
-            (joints, ratio), parameters, topology, given
+            (joints, ratio), parameters, topology, p, given
         )
         return both[0], slope[0], slope[1], jnp.asarray(both[1])
 

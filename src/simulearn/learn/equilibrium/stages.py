@@ -1,11 +1,12 @@
-"""The stages of training a model that solves for equilibrium: section model, network, stresses.
+"""The stages of training a model that solves for equilibrium: law, network, stresses.
 
 Each makes a loss at the true poses small (see `first_order`), and can be stopped and gone on with.
 Everything random is drawn from the seed, the stage and the number of the update.
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -14,29 +15,39 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import optax  # type: ignore[import-untyped]
+from numpy.typing import NDArray
 
 from simulearn.compiled import double_precision
 from simulearn.dataset import Batch
 from simulearn.errors import ComputationError, InputError
+from simulearn.files import cores
+from simulearn.grid.outline import corner_topology
 from simulearn.learn.common import checkpoint
 from simulearn.learn.equilibrium import stresses
 from simulearn.learn.equilibrium.config import Stage
 from simulearn.learn.equilibrium.first_order import first_order_errors, loss
 from simulearn.learn.equilibrium.parameters import NetworkWeights, Parameters
-from simulearn.learn.equilibrium.prediction import elastic, first
-from simulearn.learn.equilibrium.reference import TrialPoses, trial_poses
-from simulearn.material import Material
+from simulearn.learn.equilibrium.prediction import elastic
+from simulearn.learn.equilibrium.reference import (
+    TrialPoses,
+    bucket_of,
+    buckets,
+    filled,
+    joined,
+    trial_poses,
+)
 from simulearn.mechanics.forces import BeamState
-from simulearn.mechanics.model import SectionModel
-from simulearn.mechanics.poses import Array
-from simulearn.mechanics.rollout import RELEASED, every_frame, half_beams_at, loads
-from simulearn.mechanics.section import first_guess
+from simulearn.mechanics.model import SectionLaw, section_of
+from simulearn.mechanics.path import coefficients, grid_of, schedule_frames, trace
+from simulearn.mechanics.poses import Array, Pose
+from simulearn.mechanics.properties import Properties
+from simulearn.mechanics.rollout import RELEASED, half_beams_at, loads
 
-# How far each property of the section_model may be expected to go from the first guess.
-STEP = SectionModel(0.01, 0.01, 0.01, 0.01, 0.02, 0.01, 0.01, 0.01, 0.3, 0.3)
+# How far each coefficient may be expected to go from that of a layered beam.
+STEP = SectionLaw(0.01, 0.01, 0.04, 0.04, 0.02, 0.01, 0.01, 0.01, 0.3, 0.3, 0.2, 0.5)
 ROUND = 250  # updates between two checkpoints
 LATE = 0.3  # of the examples are of the last two frames
-AT_ONCE = 50  # trials whose first shapes are computed together
+AT_ONCE = 50  # trials whose stresses are turned together
 
 
 @dataclass(frozen=True)
@@ -64,12 +75,13 @@ class StageState(NamedTuple):
 
 
 class StageExamples(NamedTuple):
-    """Trials with their first shapes, and their stresses in the axes of halves."""
+    """Trials of one size with their first shapes, their stresses in the axes of halves, odds."""
 
     trials: TrialPoses
     begun: Any
     twist: Any
     stress: Any
+    weight: Any
 
 
 Report = Callable[[StageRow | None, int, int], None]  # (row or None, updates done, updates in all)
@@ -80,137 +92,197 @@ def no_report(row: StageRow | None, done: int, total: int) -> None:
 
 
 @double_precision
-def fit_section_model(
-    batch: Batch, material: Material, stage: Stage, seed: int, keep: "Keeper"
-) -> SectionModel:
-    """Return the section_model of the section that fits trials best."""
-    load, trials = loads(material), trial_poses(batch, material)
-    guess = first_guess(material)
+def fit_law(
+    examples: Sequence[StageExamples], begin: SectionLaw, stage: Stage, seed: int, keep: "Keeper"
+) -> SectionLaw:
+    """Return the law of sections that fits trials best."""
 
-    def model_of(moved: SectionModel) -> SectionModel:
-        return jax.tree.map(lambda a, b, c: a + b * c, guess, STEP, moved)
+    def law_of(moved: SectionLaw) -> SectionLaw:
+        return jax.tree.map(lambda a, b, c: a + b * c, begin, STEP, moved)
 
-    def value(moved: SectionModel, some: TrialPoses, frame: Array) -> Array:
-        parameters = Parameters(model_of(moved))
-        off = jax.vmap(lambda t, f: first_order_errors(parameters, load, t, f, None, None))(
-            some, frame
-        )
-        return jax.vmap(loss)(*off, some.size, jnp.array(RELEASED)[frame]).mean()
+    def value(moved: SectionLaw, some: TrialPoses, frame: Array) -> Array:
+        parameters = Parameters(law_of(moved))
+        off = jax.vmap(lambda t, f: first_order_errors(parameters, t, f, None, None))(some, frame)
+        return _mean_loss(off, some, frame)
 
-    zero = jax.tree.map(jnp.zeros_like, guess)
+    def draw(some: StageExamples, k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
+        return _take(some.trials, k), f
 
-    def draw(k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
-        return _take(trials, k), f
+    zero = jax.tree.map(jnp.zeros_like, begin)
+    fitted = descend(zero, value, draw, stage, examples, seed, keep)
+    return law_of(fitted)
 
-    fitted = descend(zero, value, draw, stage, len(batch), seed, keep)
-    return model_of(fitted)
+
+def _mean_loss(off: tuple[Array, Array], some: TrialPoses, frame: Array) -> Array:
+    counts = some.real, some.topology.real
+    return jax.vmap(loss)(*off, some.size, jnp.array(RELEASED)[frame], counts).mean()
 
 
 @double_precision
 def fit_network(
-    section_model: SectionModel,
-    examples: StageExamples,
-    material: Material,
+    law: SectionLaw,
+    examples: Sequence[StageExamples],
     begin: NetworkWeights,
     stage: Stage,
     seed: int,
     keep: "Keeper",
     full: bool = False,
 ) -> NetworkWeights:
-    """Return the network that corrects a section model; see `first_order_errors` for `full`."""
-    load = loads(material)
+    """Return the network that corrects a law of sections; see `first_order_errors` for `full`."""
 
     def value(
         network: NetworkWeights, some: TrialPoses, frame: Array, begun: Any, twist: Any
     ) -> Array:
-        parameters = Parameters(section_model, network)
+        parameters = Parameters(law, network)
 
         def errors(t: TrialPoses, f: Array, b: BeamState, w: Array) -> tuple[Array, Array]:
-            return first_order_errors(parameters, load, t, f, b, w, full)
+            return first_order_errors(parameters, t, f, b, w, full)
 
-        off = jax.vmap(errors)(some, frame, begun, twist)
-        return jax.vmap(loss)(*off, some.size, jnp.array(RELEASED)[frame]).mean()
+        return _mean_loss(jax.vmap(errors)(some, frame, begun, twist), some, frame)
 
-    def draw(k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
-        begun = jax.tree.map(lambda x: x[k, f], examples.begun)
-        return _take(examples.trials, k), f, begun, examples.twist[k, f]
+    def draw(some: StageExamples, k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
+        begun = jax.tree.map(lambda x: x[k, f], some.begun)
+        return _take(some.trials, k), f, begun, some.twist[k, f]
 
-    return descend(begin, value, draw, stage, len(examples.twist), seed, keep)
+    return descend(begin, value, draw, stage, examples, seed, keep)
 
 
 @double_precision
 def fit_stress(
-    section_model: SectionModel,
-    examples: StageExamples,
-    material: Material,
+    law: SectionLaw,
+    examples: Sequence[StageExamples],
     begin: NetworkWeights,
     stage: Stage,
     seed: int,
     keep: "Keeper",
 ) -> NetworkWeights:
     """Return the network that predicts stresses from true poses."""
-    load = loads(material)
 
     def value(network: NetworkWeights, some: TrialPoses, frame: Array, stress: Array) -> Array:
         def one(t: TrialPoses, f: Array, true: Array) -> Array:
+            p = t.properties
+            section_model, load = section_of(law, p, jnp), loads(p)
             s, gravity = jnp.array(RELEASED)[f], load.gravity[f]
             state = jax.tree.map(lambda x: x[f], t.state)
             bare = half_beams_at(section_model, t.topology, t.geometry, t.ratio, load, s, gravity)
-            own = elastic(network, t.topology, t.geometry, t.ratio, bare, state, s, gravity)
-            return jnp.sqrt((((own - true) / 0.01) ** 2).sum(-1) + 0.01).mean()
+            own = elastic(network, t.topology, t.geometry, t.ratio, bare, state, s, gravity, p)
+            off = jnp.sqrt((((own - true) / 0.01) ** 2).sum(-1) + 0.01).mean((0, 2, 3))
+            return (off * t.topology.real).sum() / t.topology.real.sum()
 
         return jax.vmap(one)(some, frame, stress).mean()
 
-    def draw(k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
-        return _take(examples.trials, k), f, examples.stress[k, f]
+    def draw(some: StageExamples, k: np.ndarray, f: np.ndarray) -> tuple[Any, ...]:
+        return _take(some.trials, k), f, some.stress[k, f]
 
-    return descend(begin, value, draw, stage, len(examples.twist), seed, keep)
+    return descend(begin, value, draw, stage, examples, seed, keep)
 
 
 @double_precision
-def examples_of(section_model: SectionModel, batch: Batch, material: Material) -> StageExamples:
-    """Return trials with their first shapes; those that have none are left out."""
-    load, trials = loads(material), trial_poses(batch, material)
+def examples_of(
+    batches: Sequence[Batch],
+    law: SectionLaw | None = None,
+    like: Sequence[StageExamples] = (),
+    often: float = 1.0,
+) -> list[StageExamples]:
+    """Return trials by size, with their first shapes where a law is given.
 
-    def one(t: TrialPoses) -> tuple[BeamState, Array, Array]:
-        return first(
-            t.topology,
-            t.geometry,
-            every_frame(section_model, t.topology, t.geometry, t.ratio, load),
-        )
+    Those that snap, and those that have no first shape, are left out.
 
-    find = jax.jit(jax.vmap(one))
-    parts = []
-    for a in range(0, len(batch), AT_ONCE):
-        which = np.arange(a, a + AT_ONCE) % len(batch)
-        parts.append(jax.tree.map(np.asarray, find(_take(trials, which))))
-    begun, twist, motions = jax.tree.map(lambda *x: np.concatenate(x)[: len(batch)], *parts)
-    converged = motions.max(axis=1) < 0.05
-    own = np.zeros(0)
-    if batch.stress is not None:
-        printed = jax.vmap(lambda t: stresses.printed(material, t.geometry, t.ratio))(trials)
-        fraction = 1 - jnp.array(RELEASED)
-        local_of = jax.jit(
-            jax.vmap(
-                lambda t, sigma, first: jax.vmap(
-                    lambda state, x, s: (
-                        stresses.in_halves(t.topology, t.geometry, state, x) - s * first
-                    )
-                )(t.state, sigma, fraction)
-            )
-        )
-        pieces = [
-            np.asarray(local_of(_take(trials, k), batch.stress[k, 1:], printed[k]), np.float32)
-            for k in np.array_split(np.arange(len(batch)), max(1, len(batch) // AT_ONCE))
-        ]
-        own = np.concatenate(pieces)[converged]
+    Args:
+        batches: by topology.
+        law: of sections.
+        like: further examples, whose sizes are used again as far as there is room in them.
+        often: how many times as often these trials are drawn as others.
+    """
+    batches = [
+        part for b in batches if len(part := b.take(~np.array(b.snapped or [False] * len(b))))
+    ]
+    sizes = [(b.flat.shape[1], len(b.beams)) for b in batches for _ in range(len(b))]
+    rooms = [(x.trials.real.shape[1], x.trials.ratio.shape[1]) for x in like]
+    rooms += buckets(sizes)
+    parts: list[list[StageExamples]] = [[] for _ in rooms]
+    for batch in batches:
+        room = bucket_of((batch.flat.shape[1], len(batch.beams)), rooms)
+        parts[room].append(_examples(batch, law, rooms[room], often))
+    whole = [joined(some) for some in parts if sum(len(x.weight) for x in some)]
+    if law is None:
+        return whole
+    return [some._replace(stress=_elastic(some)) for some in whole]
 
-    def take(x: Any) -> Any:
-        return np.asarray(x)[converged]
 
-    return StageExamples(
-        jax.tree.map(take, trials), jax.tree.map(take, begun), twist[converged], own
+def _examples(
+    batch: Batch, law: SectionLaw | None, room: tuple[int, int], often: float
+) -> StageExamples:
+    trials = trial_poses(batch)
+    weight = np.full(len(batch), often)
+    if law is None:
+        none = np.zeros((len(batch), 0))
+        return StageExamples(filled(trials, *room), none, none, none, weight)
+    begun, twist, ended = first_shapes(batch, trials, law)
+    whole = filled(trials._replace(state=begun), *room)
+    extra = room[1] - twist.shape[3]
+
+    def grown(x: Any, axis: int) -> Any:
+        return np.pad(x, [(0, extra if k == axis else 0) for k in range(x.ndim)])
+
+    examples = StageExamples(
+        whole._replace(state=filled(trials, *room).state),
+        whole.state,
+        grown(twist, 3),
+        np.zeros((len(batch), 0)) if batch.stress is None else grown(batch.stress[:, 1:], 2),
+        weight,
     )
+    return jax.tree.map(lambda x: np.asarray(x)[ended], examples)
+
+
+def first_shapes(
+    batch: Batch, trials: TrialPoses, law: SectionLaw
+) -> tuple[BeamState, NDArray[np.float64], NDArray[np.bool_]]:
+    """Return the shapes of trials by a law alone in frames 1 to 11, twists, and which have them."""
+    count, joints, beams = len(batch), batch.flat.shape[1], len(batch.beams)
+    R: Any = np.tile(np.eye(3), (count, 11, joints + beams, 1, 1))
+    p: Any = np.zeros((count, 11, joints + beams, 3))
+    twist, ended = np.zeros((count, 11, 2, beams, 6)), np.zeros(count, np.bool_)
+    corners = corner_topology(batch.beams, batch.flat)
+
+    def one(t: int) -> None:
+        own = Properties(*(float(x[t]) for x in trials.properties))
+        grid = grid_of(
+            batch.beams, batch.fixed, batch.flat[t], batch.actuators[t],
+            tuple(x[t] for x in corners), coefficients(section_of(law, own)), own,
+        )  # fmt: skip
+        path = trace(grid, schedule_frames(beams, own.creep))
+        ended[t] = path.ended and not path.snaps
+        if ended[t]:
+            R[t], p[t] = path.R[1:].reshape(R[t].shape), path.p[1:]
+            twist[t] = path.twists[1:]
+
+    with ThreadPoolExecutor(cores()) as pool:
+        list(pool.map(one, range(count)))
+    ends = Pose(R[:, :, :joints], p[:, :, :joints])
+    middles = Pose(R[:, :, joints:], p[:, :, joints:])
+    return BeamState(ends, middles), twist, ended
+
+
+def _elastic(examples: StageExamples) -> Any:
+    """Return the elastic stresses (T, 11, 2, B, 2, 4, 6) in the halves' axes, MPa, if there are."""
+    if examples.stress.ndim == 2:
+        return examples.stress
+    fraction = 1 - jnp.array(RELEASED)
+
+    def one(t: TrialPoses, sigma: Array) -> Array:
+        first = stresses.printed(t.properties, t.geometry, t.ratio)
+        return jax.vmap(
+            lambda state, x, s: stresses.in_halves(t.topology, t.geometry, state, x) - s * first
+        )(t.state, sigma, fraction)
+
+    find, count, parts = jax.jit(jax.vmap(one)), len(examples.weight), []
+    for begin in range(0, count, AT_ONCE):
+        which = np.arange(begin, begin + AT_ONCE) % count
+        parts.append(
+            np.asarray(find(_take(examples.trials, which), examples.stress[which]), np.float32)
+        )
+    return np.concatenate(parts)[:count]
 
 
 class Keeper:
@@ -262,9 +334,9 @@ class Keeper:
 def descend(
     begin: Any,
     value: Callable[..., Array],
-    draw: Callable[[np.ndarray, np.ndarray], tuple[Any, ...]],
+    draw: Callable[[StageExamples, np.ndarray, np.ndarray], tuple[Any, ...]],
     stage: Stage,
-    trials: int,
+    examples: Sequence[StageExamples],
     seed: int,
     keep: Keeper,
 ) -> Any:
@@ -281,16 +353,20 @@ def descend(
 
     run, done = keep.load(StageState(begin, optimiser.init(begin)))
     name = sum(keep.stage.encode())
+    shares = np.cumsum([some.weight.sum() for some in examples])
+    shares /= shares[-1]
     for until in _rounds(done, stage.updates):
         begun, values = time.perf_counter(), []
         frames = len(RELEASED)
         for k in range(done, until):
             rng = np.random.default_rng([seed, name, k])
-            which = rng.integers(trials, size=stage.batch)
+            some = examples[min(int(np.searchsorted(shares, rng.random())), len(examples) - 1)]
+            odds = np.cumsum(some.weight) / some.weight.sum()
+            which = np.minimum(np.searchsorted(odds, rng.random(stage.batch)), len(odds) - 1)
             frame = rng.integers(frames, size=stage.batch)
             late = rng.random(stage.batch) < LATE
             frame = np.where(late, rng.integers(frames - 2, frames, size=stage.batch), frame)
-            run, now = update(run, *draw(which, frame))
+            run, now = update(run, *draw(some, which, frame))
             values.append(now)
             keep.report(None, k + 1, stage.updates)
         mean = float(np.mean(np.asarray(jnp.stack(values))))

@@ -8,9 +8,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from simulearn.grid.sampled import outer_is_active
-from simulearn.material import Material
 from simulearn.mechanics.forces import FLIP, BeamState
 from simulearn.mechanics.poses import Array
+from simulearn.mechanics.properties import Properties
 from simulearn.mechanics.topology import FlatGeometry, Topology
 
 TENSOR = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # where a component lies in 11 22 33 12 13 23
@@ -18,10 +18,10 @@ VECTOR = (np.array([0, 1, 2, 0, 0, 1]), np.array([0, 1, 2, 1, 2, 2]))
 SWAP = np.array([1, 0, 3, 2])  # right and left of a beam as its second half sees them
 
 
-def printed(material: Material, geometry: FlatGeometry, ratio: Array) -> Array:
+def printed(p: Properties, geometry: FlatGeometry, ratio: Array) -> Array:
     """Return the printed-in stress of each half: (2, B, [face, middle], 4, 6) MPa, in its axes."""
-    stress = material.shrinkage.printed
-    idle, busy = (jnp.array([*stress[kind], 0, 0, 0]) for kind in ("passive", "active"))
+    idle = p.across * jnp.array([0.0, 1, 0, 0, 0, 0])
+    busy = p.along * jnp.array([1.0, 0, 0, 0, 0, 0])
     active = jnp.stack(
         [outer_is_active(ratio, geometry.length), ratio != 0], -1
     )  # (B, [face, middle])

@@ -1,7 +1,7 @@
 """Fitting a model that solves for equilibrium: what its configuration says, stage by stage.
 
-1. The section_model of the section, without a network.
-2. The first shapes of all trials by that model, from which the network takes its features.
+1. The law of sections, without a network.
+2. The first shapes of all trials by that law, from which the network takes its features.
 3. The network that corrects it, its polish, and the network for stresses.
 4. The error estimate, on a data set of its own.
 
@@ -9,6 +9,7 @@ FOLDER/law.safetensors, network.safetensors, polish..., stress...   checkpoints
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,25 +19,37 @@ import numpy as np
 
 from simulearn.compiled import double_precision
 from simulearn.dataset import Batch, Dataset, read_dataset
-from simulearn.errors import InputError
 from simulearn.learn.common.first_frame import designs_of
 from simulearn.learn.common.metrics import errors
 from simulearn.learn.common.trials import fingerprint, split
 from simulearn.learn.equilibrium import corrector
-from simulearn.learn.equilibrium.bound import ErrorBound, error_bound_of, signs
+from simulearn.learn.equilibrium.bound import (
+    ErrorBound,
+    error_bound_of,
+    seen_of,
+    signs_of_error,
+)
 from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
+from simulearn.learn.equilibrium.learnt import learnt_of
 from simulearn.learn.equilibrium.model import Equilibrium
-from simulearn.learn.equilibrium.parameters import CORRECTIONS, STRESSES, NetworkWeights, Parameters
+from simulearn.learn.equilibrium.parameters import (
+    CORRECTIONS,
+    STRESSES,
+    NetworkWeights,
+    Parameters,
+    Prediction,
+)
 from simulearn.learn.equilibrium.stages import (
     Keeper,
     Report,
     StageRow,
     examples_of,
+    fit_law,
     fit_network,
-    fit_section_model,
     fit_stress,
     no_report,
 )
+from simulearn.mechanics.model import unfitted
 
 
 @double_precision
@@ -55,15 +68,19 @@ def train(
         report: called with (row of the loss curve or None, updates done, updates in all).
 
     Raises:
-        InputError: a checkpoint is of another run, the trials are too few or of several
-            topologies, or the calibration set is not there.
+        InputError: a checkpoint is of another run, the trials are too few, or the calibration set
+            or the one by the fine mesh is not there.
         ComputationError: a loss is not finite.
     """
-    batch = _only(split(config, data)[0], data)
-    calibration = None
+    batches, aside = split(config, data)
+    fine: list[Batch] = []
+    if config.fine is not None:
+        fine = [b.take(~b.test) for b in read_dataset(config.fine).batches if (~b.test).any()]
+    calibration: list[Batch] | None = None
     if config.calibration is not None:  # what is wrong with it is said before all the work
-        calibration = read_dataset(config.calibration, stress=False).batches
-    material = batch.material
+        read = read_dataset(config.calibration, stress=False).batches
+        calibration = [b.take(~b.test) for b in read if (~b.test).any()]
+    material = batches[0].material
     identity = fingerprint(config, data)
     stages = (config.law, config.network, config.polish, config.stress)
     total = sum(stage.updates for stage in stages if stage is not None)
@@ -82,11 +99,13 @@ def train(
         return before + stage.updates
 
     keep = keeper("law")
-    section_model = fit_section_model(batch, material, config.law, config.seed, keep)
+    examples = examples_of(batches)
+    law = fit_law(examples, unfitted(), config.law, config.seed, keep)
+    law = jax.tree.map(np.asarray, law)
     before = finished(config.law, keep)
     networks: dict[str, NetworkWeights] = {}
     if config.network is not None or config.stress is not None:
-        examples = examples_of(section_model, batch, material)
+        examples = examples_of(batches, law)
         for name, stage, heads, task in (
             ("network", config.network, CORRECTIONS, fit_network),
             ("polish", config.polish, CORRECTIONS, partial(fit_network, full=True)),
@@ -94,6 +113,9 @@ def train(
         ):
             if stage is None:
                 continue
+            if name != "network" and fine:  # then it learns what the fine mesh says differently
+                examples = examples + examples_of(fine, law, examples, config.fine_share)
+                batches, fine = batches + fine, []
             begin = networks.get("network") if name == "polish" else None
             if begin is None:
                 key = jax.random.key(config.seed)
@@ -101,39 +123,48 @@ def train(
                     key, heads, config.width, config.message, config.rounds
                 )
             keep = keeper(name)
-            fitted = task(section_model, examples, material, begin, stage, config.seed, keep)
+            fitted = task(law, examples, begin, stage, config.seed, keep)
             networks["network" if name == "polish" else name] = fitted
             before = finished(stage, keep)
     network, stress = networks.get("network"), networks.get("stress")
     sizes = (config.width, config.message, config.rounds)
-    as_numpy: Any = jax.tree.map(np.asarray, Parameters(section_model, network, stress))
-    model = Equilibrium(as_numpy, material, sizes, None, config.kind)
+    as_numpy: Any = jax.tree.map(np.asarray, Parameters(law, network, stress))
+    batches += fine
+    seen = [m for b in batches for m in (b.materials or (b.material,))]
+    learnt = learnt_of(seen, max(b.mesh for b in batches))
+    model = Equilibrium(as_numpy, material, learnt, sizes, None, config.kind)
     if calibration is not None:
-        model = Equilibrium(
-            as_numpy, material, sizes, calibrated(model, calibration, [batch]), config.kind
-        )
+        model = replace(model, bound=calibrated(model, calibration, aside, batches))
     return model, every
 
 
 @double_precision
 def calibrated(
-    model: Equilibrium, calibration: Sequence[Batch], learnt: Sequence[Batch]
+    model: Equilibrium,
+    calibration: Sequence[Batch],
+    aside: Sequence[Batch],
+    learnt: Sequence[Batch],
 ) -> ErrorBound:
-    """Return the error estimate of a model, by trials that it did not learn from."""
-    indicators, wrong = [], []
-    for batch in calibration:
-        frames = model.rollout(designs_of(batch))
-        converged = frames.converged
-        prediction = model.predict(designs_of(batch))
-        indicators.append(signs(designs_of(batch), prediction)[converged])
-        wrong.append(errors(frames, batch).vertex[converged, -1])
-    return error_bound_of(np.concatenate(indicators), np.concatenate(wrong), learnt)
+    """Return the error estimate of a model, by trials that it did not learn from.
+
+    Args:
+        model: without an estimate.
+        calibration: trials that count for the coverage, by the mesh whose answers are wanted.
+        aside: further trials that the model did not learn from.
+        learnt: trials that it learnt from.
+    """
+    answers = [(batch, _answered(model, batch)) for batch in (*calibration, *aside)]
+    seen = seen_of([model.predict(designs_of(b), last=True).seen for b in learnt])
+    rows = []
+    for batch, (prediction, error, ended) in answers:
+        signs = signs_of_error(designs_of(batch), prediction, *seen)
+        rows.append((signs[ended], error[ended]))
+    signs, error = (np.concatenate(x) for x in zip(*rows, strict=True))
+    count = [np.concatenate(x) for x in zip(*rows[: len(calibration)], strict=True)]
+    return error_bound_of(signs, error, (count[0], count[1]), seen, learnt)
 
 
-def _only(batches: Sequence[Batch], data: Dataset) -> Batch:
-    if len(batches) != 1:
-        raise InputError(
-            f"{data.config.name}: has {len(batches)} topologies; these models learn from one, and "
-            "answer for all"
-        )
-    return batches[0]
+def _answered(model: Equilibrium, batch: Batch) -> tuple[Prediction, Any, Any]:
+    """Return the prediction of trials, its errors in the last frame (mm), and which have one."""
+    prediction, frames = model.predict(designs_of(batch)), model.rollout(designs_of(batch))
+    return prediction, errors(frames, batch).vertex[:, -1], frames.converged

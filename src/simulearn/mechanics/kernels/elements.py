@@ -1,7 +1,10 @@
 """Half-beams at one released fraction and one multiple of gravity, as `mechanics.section` has them.
 
-The rest of the fitted section is plane: it bends about y and stretches along x. So its compliance
+The rest of the fitted section is plane: it bends about y and stretches along x; each part lies on
+an arc. So its compliance
 is that of the plane (x, z, about y) and that across it (y, about x, about z), 3 x 3 each.
+
+Beams may differ in what they are printed of: each has a row of coefficients, joints have the last.
 """
 
 from math import cos, exp, sin, sqrt
@@ -19,6 +22,7 @@ NEAR, BEYOND = 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)  # Gauss points
 # Where the section's coefficients lie in one array; each is that of s, then that of s2.
 ACTIVE, PASSIVE, CURVATURE, SHORT, TILT = np.array([0, 2, 4, 6, 7])
 PLANE, THICKNESS, ACROSS, UP, STIFFNESS, STIFFENED = np.array([9, 11, 13, 15, 17, 35])
+OWN_PASSIVE, OWN_ACTIVE, LEAN = np.array([47, 49, 51])
 
 
 @native(entry=False)
@@ -37,43 +41,51 @@ def arc(length: float, angle: float) -> Any:
 @native(entry=False)
 def set_half_beams(
     half_beams: Array, rest: Array, section: Array, ends: Array, fixed: int, length: Array,
-    ratio: Array, face: Array, frame: Array, s: float, corrections: Array, corrected: bool,
+    ratio: Array, face: Array, frame: Array, reach: Array, s: float, corrections: Array,
+    corrected: bool,
 ) -> None:  # fmt: skip
     """Set the elements of all half-beams.
 
     Args:
         half_beams: (chunks, 2, HALF_BEAM, WIDE) to set.
         rest: (2, B, 12) to set: rotation and position of the middle in the axes of the face.
-        section: coefficients of the fitted section.
+        section: (B + 1, coefficients) of the beams, and of joints.
         ends: (2, B) joint of each half.
         fixed: the fixed joint.
         length: (B,) between the faces, mm.
         ratio: (B,) signed actuator ratios.
         face: (2, B, 3) from the joint's centre to the face of the flat grid, mm.
         frame: (2, B, 9) axes of the half in the joint's.
+        reach: (2, B) from where the axes meet to the face, mm.
         s: released fraction.
         corrections: (2, B, 12) twist of the rest, logarithm of factors on the stiffness.
         corrected: whether they count.
     """
     beams = len(length)
     soft = np.empty((2, 6))
-    for k in range(6):
-        value = section[STIFFNESS + k]
-        value += s * (section[STIFFNESS + 6 + k] + s * section[STIFFNESS + 12 + k])
-        more = section[STIFFENED + k] + s * section[STIFFENED + 6 + k]
-        soft[0, k], soft[1, k] = exp(-value), exp(-value - more)
-    tilt, plane = quadratic(section, TILT, s), 1 + quadratic(section, PLANE, s)
+    joint = section[beams]
+    tilt, plane = quadratic(joint, TILT, s), 1 + quadratic(joint, PLANE, s)
+    lean = quadratic(joint, LEAN, s)
     own, turned = np.empty(9), np.empty(9)
     stiff = np.zeros((6, 6))
     factor = np.ones(6)
     for beam in range(beams):
-        size = abs(ratio[beam])
+        size, printed = abs(ratio[beam]), section[beam]
+        for k in range(6):
+            value = printed[STIFFNESS + k]
+            value += s * (printed[STIFFNESS + 6 + k] + s * printed[STIFFNESS + 12 + k])
+            more = printed[STIFFENED + k] + s * printed[STIFFENED + 6 + k]
+            soft[0, k], soft[1, k] = exp(-value), exp(-value - more)
         passive, active = (1 - size) / 2 * length[beam], size / 2 * length[beam]
-        bend = quadratic(section, CURVATURE, s) + section[SHORT] * s * (1 - size)
-        angle = -bend * active if ratio[beam] > 0 else (bend * active if ratio[beam] < 0 else 0.0)
-        first = passive * (1 + quadratic(section, PASSIVE, s))
-        second = active * (1 + quadratic(section, ACTIVE, s))
+        bend = quadratic(printed, CURVATURE, s) + printed[SHORT] * s * (1 - size)
+        if ratio[beam] < 0:
+            bend = -bend
+        angle = -(bend + quadratic(printed, OWN_ACTIVE, s)) * active
+        before = -quadratic(printed, OWN_PASSIVE, s) * passive
+        first = passive * (1 + quadratic(printed, PASSIVE, s))
+        second = active * (1 + quadratic(printed, ACTIVE, s))
         c, n, x, z = arc(second, angle)
+        c1, n1, x1, z1 = arc(first, before)
         # Compliance at the middle, of the plane (x, z, about y) and across it (y, about x and z).
         a00 = a01 = a02 = a11 = a12 = a22 = 0.0
         b00 = b01 = b02 = b11 = b12 = b22 = 0.0
@@ -81,8 +93,10 @@ def set_half_beams(
             weight = (passive if part == 0 else active) / 2
             for point in range(2):
                 back = 1 - (NEAR if point == 0 else BEYOND)
-                if part == 0:  # a straight piece, then the arc
-                    e, f, px, pz = c, n, first * back + x, z
+                if part == 0:  # the rest of the passive arc, then the active one
+                    h, g, px, pz = arc(first * back, before * back)
+                    px, pz = px + h * x + g * z, pz - g * x + h * z
+                    e, f = h * c - g * n, g * c + h * n
                 else:
                     e, f, px, pz = arc(second * back, angle * back)
                 # The inverse of the pose onward: its rotation's transpose, its place -R^T p.
@@ -118,11 +132,13 @@ def set_half_beams(
             stiff[j, j], stiff[m, m] = (p * w - r * r) * over, (p * t - q * q) * over
             stiff[j, m] = stiff[m, j] = (q * r - p * u) * over
         for end in range(2):
-            held = tilt if ends[end, beam] == fixed else 0.0
-            h, g = cos(held), sin(held)
-            # tilt, the straight piece, the arc
-            e, f = h * c - g * n, g * c + h * n
-            px, pz = h * (first + x) + g * z, -g * (first + x) + h * z
+            turn = (tilt if ends[end, beam] == fixed else 0.0) - lean * reach[end, beam]
+            h, g = cos(turn), sin(turn)
+            # the turn of the face, the passive arc, the active one
+            px, pz = x1 + c1 * x + n1 * z, z1 - n1 * x + c1 * z
+            px, pz = h * px + g * pz, -g * px + h * pz
+            e, f = c1 * c - n1 * n, n1 * c + c1 * n
+            e, f = h * e - g * f, g * e + h * f
             own[0], own[1], own[2] = e, 0.0, f
             own[3], own[4], own[5] = 0.0, 1.0, 0.0
             own[6], own[7], own[8] = -f, 0.0, e

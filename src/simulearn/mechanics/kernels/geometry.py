@@ -109,7 +109,7 @@ def set_corners(
 
     Args:
         geometry: the flat grid.
-        section: coefficients of the fitted section.
+        section: (B + 1, coefficients) of the beams, and of joints.
         ends: (2, B) joint of each half.
         fixed: the fixed joint, whose lower half stays.
         side: (2, B) side of its joint that each half leaves.
@@ -125,8 +125,8 @@ def set_corners(
     local, touched = np.zeros((count, 8, 3)), np.zeros((count, 8))
     for f in range(begin, len(released)):
         s = released[f]
-        plane, thick = 1 + quadratic(section, PLANE, s), 1 + quadratic(section, THICKNESS, s)
-        across, up = 1 + quadratic(section, ACROSS, s), 1 + quadratic(section, UP, s)
+        joint = section[beams]
+        plane, thick = 1 + quadratic(joint, PLANE, s), 1 + quadratic(joint, THICKNESS, s)
         for j in range(count):
             for k in range(8):
                 touched[j, k] = 0.0
@@ -155,6 +155,7 @@ def set_corners(
                     if j == fixed and k < 4:
                         joints[f, j, k, m] = geometry.centre[j, m] + geometry.corners[j, k, m]
         for b in range(beams):
+            across, up = 1 + quadratic(section[b], ACROSS, s), 1 + quadratic(section[b], UP, s)
             for k in range(4):
                 for m in range(3):
                     for end in range(2):

@@ -51,7 +51,7 @@ def set_weights(
         weights.joint_volume[j] = thick * geometry.area[j]
         for k in range(3):
             weights.lever[j, k] = 0.0
-    plane = 1 + quadratic(section, PLANE, s)
+    plane = 1 + quadratic(section[len(geometry.length)], PLANE, s)
     for b in range(len(geometry.length)):
         half = geometry.length[b] / 2
         line = body * area
@@ -163,7 +163,7 @@ def follow(
     Args:
         layout: topology.
         geometry: the flat grid.
-        section: coefficients of the fitted section.
+        section: (B + 1, coefficients) of the beams, and of joints.
         load: body force N/mm3, section mm2, thickness mm.
         ratio: (B,) signed actuator ratios.
         frames: what acts in each.
@@ -196,7 +196,8 @@ def follow(
         s = frames.released[k]
         set_half_beams(
             space.half_beams, space.rest, section, layout.ends, layout.fixed, geometry.length,
-            ratio, geometry.face, geometry.frame, s, frames.corrections[k], frames.corrected,
+            ratio, geometry.face, geometry.frame, geometry.reach, s, frames.corrections[k],
+            frames.corrected,
         )  # fmt: skip
         set_weights(weights, layout, geometry, section, load, s, frames.gravity[k])
         if guided[k]:
@@ -220,8 +221,8 @@ def follow(
         if frames.corrected:  # twists are from the rest that the section model has
             set_half_beams(
                 space.half_beams, space.rest, section, layout.ends, layout.fixed,
-                geometry.length, ratio, geometry.face, geometry.frame, s, frames.corrections[k],
-                k < 0,
+                geometry.length, ratio, geometry.face, geometry.frame, geometry.reach, s,
+                frames.corrections[k], k < 0,
             )  # fmt: skip
         half_twists(layout, space.rest, geometry, section, s, R[k], p[k], twists[k])
         plain = motion <= tolerance[k] and negative == 0
@@ -243,7 +244,7 @@ def half_twists(
 ) -> None:
     """Set how far the halves' middles have left their places at rest: (2, B, 6)."""
     joints = len(layout.place)
-    plane = 1 + quadratic(section, PLANE, s)
+    plane = 1 + quadratic(section[layout.ends.shape[1]], PLANE, s)
     face, home, relative, middle = np.empty(9), np.empty(9), np.empty(9), np.empty(9)
     for end in range(2):
         for b in range(layout.ends.shape[1]):

@@ -12,6 +12,7 @@ from simulearn.drawings.importing import Options, grid_of
 from simulearn.errors import InputError, Message
 from simulearn.grid import Grid
 from simulearn.studio.hops.curves import curve_of
+from simulearn.studio.hops.material import made_of
 from simulearn.studio.hops.parameters import CURVE, MOST, NUMBER, POINT, Input
 from simulearn.studio.hops.placement import Placement, placement_of, unit_of
 from simulearn.studio.hops.values import Inputs
@@ -131,13 +132,13 @@ def design_of(
     beam comes from, give each beam its ratio.
 
     Args:
-        inputs: curves, ratios and the fixed point.
+        inputs: curves, ratios, the fixed point and the material.
         modelunits: name of the model's unit in Rhino.
         settings: how large a grid may be.
         loud: whether a conversion of units belongs in the balloon.
 
     Raises:
-        InputError: the curves, ratios or the fixed point are wrong, or show no grid.
+        InputError: the curves, ratios, the fixed point or the material are wrong, or show no grid.
     """
     lines: list[Line | Curve] = []
     ratios = _ratios(inputs)
@@ -147,7 +148,7 @@ def design_of(
     design = design_from(lines, inputs.points(FIXED.name), modelunits, settings, loud, "layers")
     # The layers are not the person's own.
     design.remarks[:] = [one for one in design.remarks if one.code != ASKED]
-    return design
+    return replace(design, grid=made_of(design.grid, inputs))
 
 
 def design_from(

@@ -51,6 +51,10 @@ class Inputs:
         given = self.items.get(name) or ()
         return text_of(given[0], name) if given else otherwise
 
+    def texts(self, name: str) -> list[str]:
+        """Return the texts of an input."""
+        return [text_of(one, _place(name, k)) for k, one in enumerate(self.items.get(name, ()))]
+
     def points(self, name: str) -> Points:
         """Return the points (n, 3) of an input, in the model's unit."""
         given = self.items.get(name, ())

@@ -18,9 +18,10 @@ export const state = shallowReactive({
   problem: null, // why the last question had no answer: a Problem
   preview: null, // { result, grid, label }: a suggestion or step shown in place of the answer
   fea: null, // { document, result, seconds, progress, state }: of the check by finite elements
+  spread: null, // { document, state, result, problem }: how prints differ; see service/spread.js
   print: null, // { document, toolpath, facts, layer, travels }: of the tab "print"
   library: [], // [{ name, description, grid }]
-  material: null, // { name, section: {width, thickness}, limits: {...} }
+  material: null, // { name, section: {width, thickness}, limits: {...}, ... } of the grid's; see service/materials.js
   connection: "online", // online, offline
   saving: "unsaved", // unsaved (nothing to save yet), saved, saving, offline, conflict, failed
   address: null, // id of the document in the page's address; null until there is something to save

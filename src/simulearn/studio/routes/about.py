@@ -1,4 +1,4 @@
-"""What the server is and has: its version, the library and material systems."""
+"""What the server is and has: its version and the library."""
 
 from functools import cache
 from typing import Any
@@ -8,9 +8,8 @@ from fastapi import APIRouter, Request
 from simulearn import __version__
 from simulearn.grid import grid_to_dict, library, make
 from simulearn.learn.common.bundle import bundle_of
-from simulearn.material import load_material, names
 from simulearn.outputs import WRITERS
-from simulearn.studio.answers import Library, Materials, Version
+from simulearn.studio.answers import Library, Version
 from simulearn.studio.bodies import JsonRoute
 from simulearn.studio.simulations import AT_ONCE
 
@@ -42,12 +41,6 @@ async def library_() -> Any:
     return _library()
 
 
-@router.get("/api/materials", response_model=Materials)
-async def materials() -> Any:
-    """Return the material systems that come with SimuLearn."""
-    return _materials()
-
-
 @cache
 def _model() -> dict[str, str]:
     return bundle_of("default").identity.model_dump()
@@ -60,9 +53,3 @@ def _library() -> dict[str, Any]:
         for name, words in library().items()
     ]
     return {"designs": designs}
-
-
-@cache
-def _materials() -> dict[str, Any]:
-    facts = {"name", "title", "section", "limits"}
-    return {"materials": [load_material(name).model_dump(include=facts) for name in names()]}

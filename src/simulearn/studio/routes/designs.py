@@ -1,7 +1,7 @@
 """What a design is worth: validated, simulated, and its modifications ranked."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -11,11 +11,20 @@ from simulearn.errors import Cancel, InputError, Message
 from simulearn.grid import Grid, Validation, grid_from_dict, grid_to_dict, validate
 from simulearn.interop import frames
 from simulearn.inverse import Suggestion, rank, task_from_dict
-from simulearn.material import load_material
+from simulearn.material import Material, load_material, materials_of
 from simulearn.simulate import Failure, Outcome, outcome_to_dict
 from simulearn.simulate.engines import in_order
+from simulearn.simulate.scatter import prints_source, scattered
+from simulearn.simulate.simulator import Simulator
 from simulearn.studio.answers import RankAnswer, SimulateAnswer, ValidationAnswer
-from simulearn.studio.bodies import GridBody, JsonRoute, SimulateBody, TaskBody, json_response
+from simulearn.studio.bodies import (
+    GridAlone,
+    JsonRoute,
+    SimulateBody,
+    TaskBody,
+    json_response,
+    parted,
+)
 from simulearn.studio.problems import Problem
 from simulearn.studio.settings import Settings
 from simulearn.studio.simulations import Simulations, engine_of
@@ -28,7 +37,7 @@ router = APIRouter(route_class=JsonRoute, tags=["designs"])
 
 
 @router.post("/api/validate", response_model=ValidationAnswer)
-def validate_(grid: GridBody) -> Response:
+def validate_(grid: GridAlone) -> Response:
     """Return what forbids a design and what is unusual about it, as `simulearn validate --json`.
 
     An object that is no grid has an answer, too: its error says why.
@@ -36,7 +45,8 @@ def validate_(grid: GridBody) -> Response:
     if not isinstance(grid, dict):
         raise Problem(422, "grid-file", "the body is not an object; it is a grid", "body")
     try:
-        design = grid_from_dict(grid)
+        data, materials = parted(grid)
+        design = grid_from_dict(data, materials=materials)
         report = validate(design, load_material(design.material))
     except InputError as error:
         report = Validation((Message(error.code, error.where or "grid", str(error)),), ())
@@ -70,14 +80,20 @@ async def rank_(task: TaskBody, request: Request) -> Response:
 def _simulated(body: SimulateBody, settings: Settings, binary: bool, cancel: Cancel) -> str | bytes:
     """Return the answer to a request for simulations."""
     engine = engine_of(body.engine, body.model)
-    grids, outcomes = _read(body.grids, settings)
+    grids, outcomes = _read(body.grids, settings, materials_of(body.materials))
     left = [k for k in range(len(grids)) if k not in outcomes]
     if sum(len(grids[k].beams) for k in left) > settings.beams_in_all:
         text = f"the grids have more than {settings.beams_in_all} beams in all; send fewer at once"
         raise InputError(text, "too-large", "grids")
+    if body.prints and len(grids) > 1:
+        raise InputError(
+            "prints are drawn of one grid at once; send one", "too-many-grids", "grids"
+        )
     if body.engine == "fea" and left:
         check_fea([grids[k] for k in left], settings)
     answers = engine.simulate([grids[k] for k in left], cancel=cancel)
+    if body.prints:
+        answers = [_spread(one, body.prints, engine, settings, cancel) for one in answers]
     outcomes.update(zip(left, answers, strict=True))
     in_place = in_order(iter(outcomes.items()), len(grids))
     if binary:
@@ -85,7 +101,29 @@ def _simulated(body: SimulateBody, settings: Settings, binary: bool, cancel: Can
     return json.dumps({"results": [outcome_to_dict(one) for one in in_place]}, allow_nan=False)
 
 
-def _read(entries: Sequence[Any], settings: Settings) -> tuple[list[Grid], dict[int, Outcome]]:
+def _spread(
+    outcome: Outcome, most: int, engine: Simulator, settings: Settings, cancel: Cancel
+) -> Outcome:
+    """Return a result together with how prints of its design differ; a failure as it is.
+
+    Raises:
+        InputError: the material has no scatter, or so many prints take too long.
+    """
+    if isinstance(outcome, Failure):
+        return outcome
+    beams = len(outcome.grid.beams)
+    if beams > settings.rank_beams:
+        text = f"the grid has {beams} beams; prints of at most {settings.rank_beams} are drawn here"
+        raise InputError(text, "too-large", "grid")
+    source = prints_source(load_material(outcome.grid.material), engine)
+    if source.engine != "learned":
+        check_fea([outcome.grid], settings)
+    return scattered(outcome, min(most, source.count), engine=engine, cancel=cancel)
+
+
+def _read(
+    entries: Sequence[Any], settings: Settings, materials: Mapping[str, Material]
+) -> tuple[list[Grid], dict[int, Outcome]]:
     """Return the grids of a request, and the outcome of each that will not be simulated."""
     if len(entries) > settings.grids:
         text = f"grids has {len(entries)} entries; at most {settings.grids} are taken at once"
@@ -94,7 +132,7 @@ def _read(entries: Sequence[Any], settings: Settings) -> tuple[list[Grid], dict[
     outcomes: dict[int, Outcome] = {}
     for k, entry in enumerate(entries):
         try:
-            grids.append(grid_from_dict(entry))
+            grids.append(grid_from_dict(entry, materials=materials))
             check_size(grids[k], settings)
         except InputError as error:
             grids[k:] = [NO_GRID]
@@ -125,7 +163,8 @@ def check_fea(grids: Sequence[Grid], settings: Settings) -> None:
 
 def _ranked(data: Any, settings: Settings, cancel: Cancel) -> Response:
     """Return the answer to a request for a ranking."""
-    task = task_from_dict(data)
+    data, materials = parted(data)
+    task = task_from_dict(data, materials=materials)
     if task.engine not in RANKING:
         text = f'engine "{task.engine}" does not rank here; those that do are {", ".join(RANKING)}'
         raise InputError(text, "engine-unknown", "engine")

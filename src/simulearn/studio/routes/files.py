@@ -13,8 +13,9 @@ from simulearn.drawings.units import LENGTHS, UnitError
 from simulearn.errors import Cancel
 from simulearn.grid import Grid, grid_from_dict
 from simulearn.grid.structure import FARTHEST
+from simulearn.material import materials_of
 from simulearn.simulate import Result, one
-from simulearn.studio.bodies import GridBody, JsonRoute, json_response
+from simulearn.studio.bodies import GridBody, JsonRoute, OwnMaterials, json_response
 from simulearn.studio.documentfile import DocumentGoal, DocumentPrinter, Drawing
 from simulearn.studio.downloads import attachment, safe_stem
 from simulearn.studio.exports import check_format, exported
@@ -115,6 +116,7 @@ class OpenedFile(BaseModel):
     grid: Drawing
     goals: list[DocumentGoal]
     printer: DocumentPrinter | None
+    materials: Annotated[OwnMaterials, Field(description="of a document only")]
     messages: list[MessageBody]
     drawing: Annotated[DrawingFacts | None, Field(description="of a drawing only")]
 
@@ -128,6 +130,7 @@ class ExportBody(BaseModel):
     format: Annotated[str, Field(description="an ending such as .png; see /api/version")]
     engine: Annotated[str, Field(description="learned, beams or fea")] = "learned"
     name: Annotated[str, Field(max_length=1000)] = "grid"
+    materials: OwnMaterials = []
 
 
 @router.post("/api/open", response_model=OpenedFile, responses=BUSY, openapi_extra=ANY_FILE)
@@ -158,7 +161,7 @@ async def export(body: ExportBody, request: Request) -> Response:
     simulations: Simulations = state.simulations
     exports: Turns = state.exports
     check_format(body.format)
-    grid = grid_from_dict(body.grid)
+    grid = grid_from_dict(body.grid, materials=materials_of(body.materials))
     check_size(grid, state.settings)
     if body.engine == "fea":
         check_fea([grid], state.settings)

@@ -15,8 +15,16 @@ from simulearn.interop import frames
 from simulearn.inverse import SearchResult, Step, Task, optimize, search_figures, task_from_dict
 from simulearn.inverse.search import method
 from simulearn.inverse.space import Space
+from simulearn.material import materials_of
 from simulearn.simulate import Failure, Outcome, Result, outcome_to_dict
-from simulearn.studio.bodies import GridBody, JsonRoute, TaskBody, json_response
+from simulearn.studio.bodies import (
+    GridBody,
+    JsonRoute,
+    OwnMaterials,
+    TaskBody,
+    json_response,
+    parted,
+)
 from simulearn.studio.jobs import Answer, Job, Jobs
 from simulearn.studio.problems import Problem, ProblemBody
 from simulearn.studio.routes.designs import check_size
@@ -41,6 +49,7 @@ class FeaBody(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid")
 
     grids: Annotated[list[GridBody], Field(min_length=1, max_length=MOST_GRIDS)]
+    materials: OwnMaterials = []
 
 
 class JobBegun(BaseModel):
@@ -85,7 +94,8 @@ class JobAnswer(BaseModel):
 def optimize_(task: TaskBody, request: Request) -> Response:
     """Begin a search for a design that comes where it is wanted, as `simulearn optimize`."""
     state = request.app.state
-    wanted = checked(task_from_dict(task), state.settings)
+    data, materials = parted(task)
+    wanted = checked(task_from_dict(data, materials=materials), state.settings)
     return _begun(state.jobs.start("optimize", partial(search, wanted, state.simulations)))
 
 
@@ -93,10 +103,11 @@ def optimize_(task: TaskBody, request: Request) -> Response:
 def fea(body: FeaBody, request: Request) -> Response:
     """Begin to simulate designs by finite elements."""
     state = request.app.state
+    materials = materials_of(body.materials)
     grids = []
     for k, entry in enumerate(body.grids):
         try:
-            grids.append(grid_from_dict(entry))
+            grids.append(grid_from_dict(entry, materials=materials))
             check_size(grids[k], state.settings)
         except InputError as error:
             where = f"grids[{k}]" + (f", {error.where}" if error.where else "")

@@ -20,8 +20,8 @@ from simulearn.fabricate import (
 )
 from simulearn.fabricate.moves import RESTORE
 from simulearn.grid import Grid, grid_from_dict
-from simulearn.material import load_material
-from simulearn.studio.bodies import GridBody, JsonRoute, json_response
+from simulearn.material import load_material, materials_of
+from simulearn.studio.bodies import GridBody, JsonRoute, OwnMaterials, json_response
 from simulearn.studio.downloads import attachment, safe_stem
 from simulearn.studio.problems import MessageBody
 from simulearn.studio.routes.designs import BUSY, check_size
@@ -58,6 +58,7 @@ class ToolpathBody(BaseModel):
     names: Annotated[
         list[str] | None, Field(description="of the designs, for the file and its messages")
     ] = None
+    materials: OwnMaterials = []
 
 
 class GcodeBody(ToolpathBody):
@@ -179,9 +180,10 @@ def _prepared(body: ToolpathBody, settings: Settings) -> Job:
         text = f"names has {len(names)} entries for {len(body.grids)} grids; give one for each"
         raise InputError(text, "names", "names")
     names = [safe_stem(name) for name in names]
+    materials = materials_of(body.materials)
     grids, beams = [], 0
     for k, entry in enumerate(body.grids):
-        grid = grid_from_dict(entry)
+        grid = grid_from_dict(entry, materials=materials)
         check_size(grid, settings)
         grids.append(grid)
         beams += len(grid.beams)

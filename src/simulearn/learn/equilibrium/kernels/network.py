@@ -14,7 +14,9 @@ from simulearn.native import native
 
 Array = Any
 
-PLAIN = 17  # features besides twists and directions
+MATERIAL = 17  # where the features of the material begin
+PLAIN = 25  # features besides twists and directions
+CURL = 6  # which feature of the material is its own curl, which is upwards
 WAVES = 5  # 1, cos, sin, cos 2, sin 2 of the angle
 HALF = np.float32(0.5)
 
@@ -63,7 +65,7 @@ class Layers(NamedTuple):
 @native(entry=False)
 def set_features(
     x: Array, layers: Any, geometry: Any, ends: Array, fixed: int, ratio: Array, valence: Array,
-    R: Array, twists: Array, s: float, gravity: float, scale: float,
+    R: Array, twists: Array, s: float, gravity: float, scale: float, signs: Array, strain: Array,
 ) -> None:  # fmt: skip
     """Set the rows of all halves (2 B), then of the mirrored design, in one frame."""
     beams, joints = len(ratio), len(valence)
@@ -90,12 +92,15 @@ def set_features(
             row[12] = far_held * sign
             row[13] = geometry.area[joint] / (scale * scale) / 30 - 2
             row[14] = valence[joint] - 3.0
-            row[15] = 2 * s - 1
-            row[16] = (gravity - 1) * 8
+            row[15] = 2 * s * strain[b] - 1
+            row[16] = (gravity - 1) * 4
+            for k in range(len(signs)):
+                row[MATERIAL + k] = signs[k] * sign if k == CURL else signs[k]
             for k in range(6):
                 flip = layers.flip[k] if sign < 0 else 1.0
-                row[PLAIN + k] = twists[end, b, k] / layers.twist[k] * flip
-                row[PLAIN + 6 + k] = twists[1 - end, b, k] / layers.twist[k] * flip
+                usual = layers.twist[k] * (scale if k < 3 else 1.0)
+                row[PLAIN + k] = twists[end, b, k] / usual * flip
+                row[PLAIN + 6 + k] = twists[1 - end, b, k] / usual * flip
             frame = geometry.frame[end, b]
             for k in range(3):
                 down = sign if k == 2 else 1.0
@@ -185,7 +190,8 @@ def set_received(
 @native()
 def outputs(
     layers: Any, geometry: Any, ends: Array, fixed: int, ratio: Array, valence: Array, R: Array,
-    twists: Array, released: Array, gravity: Array, scale: float, begin: int, out: Array,
+    twists: Array, released: Array, gravity: Array, scale: float, signs: Array, strain: Array,
+    begin: int, out: Array,
 ) -> None:  # fmt: skip
     """Set the outputs of a network for all halves in some frames.
 
@@ -201,6 +207,8 @@ def outputs(
         released: (F,) fraction.
         gravity: (F,) multiple.
         scale: of lengths.
+        signs: what the networks see of the material.
+        strain: (B,) released strain of the beams over that of the reference.
         begin: the first frame that counts.
         out: (F, 2, B, outputs) to set.
     """
@@ -221,7 +229,7 @@ def outputs(
     for f in range(begin, len(released)):
         set_features(
             x, layers, geometry, ends, fixed, ratio, valence, R[f], twists[f], released[f],
-            gravity[f], scale,
+            gravity[f], scale, signs, strain,
         )  # fmt: skip
         layered = 4 + 2 * len(layers.into)
         for layer in range(layered):  # one place for each kernel: what is called is compiled in

@@ -5,6 +5,7 @@ from simulearn.fabricate import load_printer, prepare, printers
 from simulearn.studio.downloads import safe_stem
 from simulearn.studio.hops.components.shared import texts
 from simulearn.studio.hops.design import DRAWN, design_of
+from simulearn.studio.hops.material import MATERIAL
 from simulearn.studio.hops.parameters import NUMBER, TEXT, Component, Input, Output
 from simulearn.studio.hops.solving import Context, Outputs
 from simulearn.studio.hops.values import Exact, Inputs
@@ -50,7 +51,7 @@ COMPONENT = Component(
     "gcode",
     "G-code",
     "The file that prints a grid.",
-    (*DRAWN, PRINTER, NAME),
+    (*DRAWN, PRINTER, NAME, MATERIAL),
     (
         Output("Text", "T", "The file, line by line.", TEXT),
         Output("File", "F", "A name for the file.", TEXT),

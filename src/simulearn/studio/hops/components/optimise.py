@@ -5,6 +5,7 @@ from functools import partial
 from simulearn.inverse import task_from_dict
 from simulearn.studio.hops.design import DRAWN, design_of
 from simulearn.studio.hops.goals import GOALS, task_of
+from simulearn.studio.hops.material import MATERIAL, held_by
 from simulearn.studio.hops.parameters import NUMBER, TEXT, Component, Input, Output
 from simulearn.studio.hops.searches import Searches
 from simulearn.studio.hops.solving import Context, Outputs
@@ -29,11 +30,11 @@ def run(inputs: Inputs, context: Context) -> Outputs:
     design = design_of(inputs, context.modelunits, state.settings)
     data = task_of(inputs, design)
     data["limits"] = {"seconds": inputs.number(SECONDS.name, float(SECONDS.default or 0))}
-    task = checked(task_from_dict(data), state.settings)
+    task = checked(task_from_dict(data, materials=held_by(design.grid)), state.settings)
     jobs: Jobs = state.jobs
     searches: Searches = state.searches
     begin = partial(jobs.start, "optimize", partial(search, task, state.simulations))
-    job = searches.start(data, design, begin)
+    job = searches.start({**data, "design": design.grid.digest}, design, begin)
     values = {"Job": [job.id], "State": [job.state], "Messages": design.texts}
     # The same inputs are asked about again, so that a job that is gone is begun anew.
     return Outputs(values, warnings=design.warnings, finished=False)
@@ -43,7 +44,7 @@ COMPONENT = Component(
     "optimise",
     "Optimise",
     "Begins a search for a grid whose points come to their targets. Poll shows how far it is.",
-    (*DRAWN, *GOALS, SECONDS),
+    (*DRAWN, *GOALS, SECONDS, MATERIAL),
     (
         Output("Job", "J", "The name of the search, for Poll.", TEXT),
         Output("State", "S", "queued, running, done, failed or cancelled.", TEXT),

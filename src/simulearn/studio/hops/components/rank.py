@@ -11,6 +11,7 @@ from simulearn.studio.hops.components.shared import (
 )
 from simulearn.studio.hops.design import DRAWN, design_of
 from simulearn.studio.hops.goals import GOALS, task_of
+from simulearn.studio.hops.material import MATERIAL, held_by
 from simulearn.studio.hops.parameters import CURVE, MESH, NUMBER, TEXT, Component, Output
 from simulearn.studio.hops.solving import Context, Outputs
 from simulearn.studio.hops.values import Inputs
@@ -27,7 +28,7 @@ def run(inputs: Inputs, context: Context) -> Outputs:
             f"at most {settings.rank_beams} can be ranked here"
         )
         raise InputError(text, "too-large", "Curves")
-    task = task_from_dict(task_of(inputs, design))
+    task = task_from_dict(task_of(inputs, design), materials=held_by(design.grid))
     ranking = rank(task, engine_of(task.engine), cancel=context.cancel)
     best = [design.changed(one.grid) for one in ranking.best]
     results = simulated([one.grid for one in best], task.engine, settings, context.cancel)
@@ -55,7 +56,7 @@ COMPONENT = Component(
     "rank",
     "Rank",
     "Five single changes that bring points of a grid closest to their targets.",
-    (*DRAWN, *GOALS),
+    (*DRAWN, *GOALS, MATERIAL),
     (
         Output("Error", "E", "How far the points are from their targets as it is.", NUMBER),
         Output("Changes", "C", "The suggestions in words, the best first.", TEXT),

@@ -14,6 +14,7 @@ from simulearn.studio.hops.components.shared import (
     simulated,
 )
 from simulearn.studio.hops.design import DRAWN, design_of
+from simulearn.studio.hops.material import MATERIAL
 from simulearn.studio.hops.parameters import (
     BOOLEAN,
     CURVE,
@@ -68,7 +69,7 @@ COMPONENT = Component(
     "simulate",
     "Simulate",
     "The shape that a grid takes in hot water.",
-    (*DRAWN, ENGINE, FRAME),
+    (*DRAWN, ENGINE, FRAME, MATERIAL),
     (
         MESHES,
         Output("Flat", "F", "The flat grid, pale.", MESH),

@@ -12,6 +12,7 @@ from simulearn.studio.hops.components.shared import (
     texts,
 )
 from simulearn.studio.hops.design import DRAWN, Remark, design_of
+from simulearn.studio.hops.material import MATERIAL
 from simulearn.studio.hops.parameters import BOOLEAN, POINT, Component, Output
 from simulearn.studio.hops.solving import Context, Outputs
 from simulearn.studio.hops.values import Inputs
@@ -43,7 +44,7 @@ COMPONENT = Component(
     "validate",
     "Validate",
     "Says whether a grid can be printed and simulated, and where what is wrong lies.",
-    DRAWN,
+    (*DRAWN, MATERIAL),
     (
         Output("Valid", "V", "Whether there is no error.", BOOLEAN),
         MESSAGES,

@@ -1,4 +1,4 @@
-// The document that the page edits: a grid, goals and what is to be printed on.
+// The document that the page edits: a grid, goals, what is to be printed on, and own materials.
 
 import { FARTHEST, isNumber, isPlace } from "./geometry.js";
 import { same } from "./numbering.js";
@@ -9,7 +9,9 @@ const MOST_JOINTS = 20_000; // as the server
 const MOST_BEAMS = 2 * MOST_JOINTS;
 const MOST_GOALS = 1000;
 const MOST_NAME = 200; // characters
-export const MOST_PROFILE = 65_536; // characters, as the server
+export const MOST_PROFILE = 65_536; // characters of a profile or a material, as the server
+export const MOST_MATERIALS = 16; // as the server
+export const USUAL_MATERIAL = "pla-hot-water";
 const SECTIONS = ["start", "middle", "end"];
 
 /** Return a document without joints. */
@@ -19,10 +21,11 @@ export function emptyDocument() {
     name: "",
     grid: {
       schema: GRID_SCHEMA,
-      joints: [], beams: [], actuators: [], fixed: 0, material: "pla-hot-water",
+      joints: [], beams: [], actuators: [], fixed: 0, material: USUAL_MATERIAL,
     },
     goals: [], // [{ vertex: ["joint", k, "centre"], target: [x, y, z], weight: 1 }]
     printer: "ender-3", // a name, or { profile: the text of one }
+    materials: [], // the texts of those that the grid may name besides the server's
   };
 }
 
@@ -52,6 +55,11 @@ function samePairs(a, b) {
 /** Return whether two printers have one name or one profile. */
 export function samePrinter(a, b) {
   return a === b || (a.profile !== undefined && a.profile === b.profile);
+}
+
+/** Return whether two documents have the same texts of materials. */
+export function sameMaterials(a, b) {
+  return same(a.materials, b.materials);
 }
 
 /** Return the document with another grid; goals whose vertex it does not have are dropped. */
@@ -89,13 +97,26 @@ export function readDocument(data) {
   const keys = Object.keys(emptyDocument());
   const given = object(data, "the document", keys);
   check(given.schema === SCHEMA, `schema is ${shown(given.schema)}; this page reads "${SCHEMA}"`);
-  const { name = "", goals = [], printer = emptyDocument().printer } = given;
+  const { name = "", goals = [], printer = emptyDocument().printer, materials = [] } = given;
   const titled = typeof name === "string" && name.length <= MOST_NAME;
   check(titled, `name is ${shown(name)}; it is a text of at most ${MOST_NAME} characters`);
   const grid = readGrid(given.grid);
   check(Array.isArray(goals) && goals.length <= MOST_GOALS, `goals are not a list of at most ${MOST_GOALS}`);
   const aims = goals.map((goal, k) => readGoal(goal, k, grid));
-  return { schema: SCHEMA, name, grid, goals: aims, printer: readPrinter(printer) };
+  return {
+    schema: SCHEMA, name, grid, goals: aims, printer: readPrinter(printer), materials: readMaterials(materials),
+  };
+}
+
+/** Return texts of materials; what is in them is for the server to say. */
+function readMaterials(data) {
+  const few = Array.isArray(data) && data.length <= MOST_MATERIALS;
+  check(few, `materials are not a list of at most ${MOST_MATERIALS} texts`);
+  data.forEach((text, k) => {
+    const short = typeof text === "string" && text.length <= MOST_PROFILE;
+    check(short, `materials[${k}] is ${shown(text)}; it is a text of at most ${MOST_PROFILE} characters`);
+  });
+  return [...data];
 }
 
 function readPrinter(data) {
@@ -137,11 +158,10 @@ export function readGrid(data) {
   });
   const known = isIndex(fixed, places.length) || (places.length === 0 && fixed === 0);
   check(known, `fixed is ${shown(fixed)}; it is the number of a joint`);
-  const { material: usual } = emptyDocument().grid;
   const made = material === undefined || isName(material);
   check(made, `material is ${shown(material)}; it is the name of a material`);
   return {
-    schema, joints: places, beams: pairs, actuators: [...ratios], fixed, material: material ?? usual,
+    schema, joints: places, beams: pairs, actuators: [...ratios], fixed, material: material ?? USUAL_MATERIAL,
   };
 }
 

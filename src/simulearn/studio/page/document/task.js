@@ -6,6 +6,9 @@
  */
 export function taskOf(document, { free, limits, method, engine = "learned" } = {}) {
   const goals = document.goals.map(({ vertex, target, weight }) => ({ vertex, target, weight }));
-  const task = { schema: "simulearn.task/1", grid: document.grid, goals, free, method, engine, limits };
+  const materials = document.materials.length ? document.materials : undefined;
+  const task = {
+    schema: "simulearn.task/1", grid: document.grid, goals, free, method, engine, limits, materials,
+  };
   return Object.fromEntries(Object.entries(task).filter(([, value]) => value !== undefined));
 }

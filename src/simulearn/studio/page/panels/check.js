@@ -9,8 +9,10 @@ import { t } from "../text/text.js";
 import { button } from "./controls.js";
 import { facts } from "./fields.js";
 import { note, problemNote, Reader, sentence } from "./notes.js";
+import { Spread } from "./spread.js";
 
 const FRAMES = 11; // that are computed: the flat one is given
+export const NOT_LEARNT = "material-not-learnt"; // code of the error that finite elements do not mind
 const RELEASED = 10; // frames in which it is released, a tenth each
 
 /** Return { mean, max, part } of the last frame: the mean distance, the largest one and where it is. */
@@ -65,7 +67,7 @@ function outcome(fea, distance, current) {
   const slow = result.seconds ?? fea.seconds;
   const inside = distance && bound !== null ? distance.mean <= bound : null;
   return [
-    distance
+    !reference ? note("info", t("panels.checkAlone")) : distance
       ? h("div", { class: "measure" }, [
         h("p", { class: "measure-value numbers" }, [
           mm(distance.mean),
@@ -88,7 +90,7 @@ function outcome(fea, distance, current) {
     quick && slow > quick && h("p", { class: "note" },
       t("panels.faster", { times: times(slow / quick) })),
     result.stable === false && note("warning", t("panels.notStable")),
-    current && h("div", { class: "toggles" }, [ // only a shape of the present design is drawn over it
+    current && reference && h("div", { class: "toggles" }, [ // only a shape of the present design is drawn over it
       toggle(t("panels.overlay"), view.overlay, (on) => { view.overlay = on; }),
       toggle(t("panels.colourDeviation"), view.colour === "deviation", (on) => {
         view.colour = on ? "deviation" : "actuator";
@@ -114,16 +116,19 @@ export const Check = {
       const { fea } = state;
       const current = fea?.document.grid === state.document.grid;
       const ready = state.answer && !stale.value;
-      const invalid = state.check?.errors.length > 0;
+      const errors = state.check?.errors ?? [];
+      // Finite elements take any material; the model may have learnt others.
+      const alone = errors.length === 1 && errors[0].code === NOT_LEARNT
+        && state.check.document.grid === state.document.grid;
       return h("div", { class: "panel" }, [
         h("section", { class: "part-section", "aria-label": t("panels.check") }, [
           !fea && h("p", { class: "note" }, t("panels.checkNote")),
           !checking() && h("div", { class: "row" }, [
             button(t(fea ? "panels.checkAgain" : "panels.checkStart"), startCheck, {
-              kind: fea?.state === "done" && current ? "" : "primary", disabled: !ready,
+              kind: fea?.state === "done" && current ? "" : "primary", disabled: !ready && !alone,
             }),
           ]),
-          invalid && !checking() && h("p", { class: "note" }, t("panels.checkNeedsShape")),
+          errors.length > 0 && !alone && !checking() && h("p", { class: "note" }, t("panels.checkNeedsShape")),
           fea && !current && note("warning", t("panels.checkEarlier")),
           checking() && progress(fea),
           fea?.state === "done" && outcome(fea, distance.value, current),
@@ -134,6 +139,7 @@ export const Check = {
             ])),
           h(Read),
         ]),
+        h(Spread),
       ]);
     };
   },

@@ -85,8 +85,8 @@ function layersSection(drawing) {
   if (layers.every(({ name }) => name === "") && told.length === 0 && !options.actuators) return null;
   return section(t("drawing.layers"), [
     h("ul", { class: "drawing-layers" }, layers.map((one) => layer(drawing, one))),
-    h("label", { class: "printer" }, [
-      h("span", { class: "printer-label" }, t("drawing.actuators")),
+    h("label", { class: "picker" }, [
+      h("span", { class: "picker-label" }, t("drawing.actuators")),
       h("select", {
         class: "select", value: options.actuators ?? "auto",
         onChange: (event) => change({ actuators: event.target.value }),

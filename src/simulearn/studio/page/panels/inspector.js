@@ -10,6 +10,7 @@ import { t } from "../text/text.js";
 import { Actuator } from "./actuator.js";
 import { button } from "./controls.js";
 import { NumberField, facts } from "./fields.js";
+import { MaterialChoice } from "./material.js";
 import { mm } from "./parts.js";
 import { Transform } from "./transform.js";
 
@@ -117,8 +118,8 @@ function grid() {
       box && [t("common.size"), `${mm(box.width)} × ${mm(box.height)} mm`],
       result && [t("common.dimension"), `${mm(result.dimension_mm)} mm`],
       result && [t("common.heights"), heights(result)],
-      [t("common.material"), state.material?.title ?? state.document.grid.material],
     ]),
+    h(MaterialChoice),
     joints.length > 0 && h(Transform, { selection: null }),
   ]);
 }

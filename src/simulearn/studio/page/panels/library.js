@@ -38,9 +38,9 @@ function words({ name, description }) {
 }
 
 function use({ name, grid }) {
-  const { material } = state.document.grid;
+  const { grid: { material }, printer, materials } = state.document;
   close();
-  place({ ...emptyDocument(), name, grid: { ...grid, material }, printer: state.document.printer },
+  place({ ...emptyDocument(), name, grid: { ...grid, material }, printer, materials },
     t("common.didLibrary", { name }));
 }
 

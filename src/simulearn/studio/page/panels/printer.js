@@ -68,8 +68,8 @@ export const PrinterChoice = {
     return () => {
       const facts = printerFacts();
       const { problem } = typeof state.document.printer === "string" ? {} : own.value;
-      return h("div", { class: "printer" }, [
-        h("label", { class: "printer-label", for: "printer" }, t("print.printer")),
+      return h("div", { class: "picker" }, [
+        h("label", { class: "picker-label", for: "printer" }, t("print.printer")),
         choice(facts),
         facts && describe(facts),
         problem && problemNote(t("print.profileBad"), problem),

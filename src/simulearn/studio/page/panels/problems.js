@@ -2,8 +2,10 @@
 
 import { h, ref } from "/libraries/vue.js";
 import { repair, repairActuators } from "../document/repairs.js";
-import { edit, select, state } from "../store.js";
+import { checking, startCheck } from "../service/checking.js";
+import { edit, select, state, view } from "../store.js";
 import { t } from "../text/text.js";
+import { NOT_LEARNT } from "./check.js";
 import { button } from "./controls.js";
 import { icon } from "./icons.js";
 import { sentence } from "./notes.js";
@@ -23,6 +25,12 @@ const repairButton = ({ apply, label, values }) => {
   const text = t(label, values);
   return button(text, () => edit(apply, { label: text }), { kind: "small" });
 };
+
+/** What finite elements can do for a design that the model has no shape of. */
+const elementsButton = () => button(t("material.elements"), () => {
+  [state.tab, view.side] = ["check", true];
+  startCheck();
+}, { kind: "small" });
 
 function entry(kind, message, i, offered) {
   const { grid } = state.document;
@@ -47,6 +55,7 @@ function entry(kind, message, i, offered) {
         }, sentence(message.message))
         : h("p", { class: "message-text" }, sentence(message.message)),
       first && repairButton(mend),
+      fresh && message.code === NOT_LEARNT && !checking() && elementsButton(),
     ]),
   ]);
 }

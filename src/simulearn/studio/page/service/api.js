@@ -52,12 +52,19 @@ const post = (path, body, signal) => json(path, { method: "POST", body, signal }
 export const version = () => json("/api/version");
 export const library = () => json("/api/library");
 export const materials = () => json("/api/materials");
+
+/** Return the materials that texts describe, or the text of a material of the server. */
+export const readMaterials = (texts) => post("/api/materials", { materials: texts });
+export const materialText = async (name) => (await request(`/api/materials/${name}`, { accept: "*/*" })).text();
 export const printers = () => json("/api/printers");
 
+// The texts of materials that grids may name, where there are any.
+const ownMaterials = (texts) => (texts?.length ? { materials: texts } : {});
+
 /** Return the results of grids, as `parseFrames` gives them; each has its `grid`, to be drawn by. */
-export async function simulate(grids, { engine = "learned", signal } = {}) {
+export async function simulate(grids, { engine = "learned", materials: texts, prints = 0, signal } = {}) {
   const response = await request("/api/simulate", {
-    method: "POST", body: { grids, engine }, accept: MEDIA_TYPE, signal,
+    method: "POST", body: { grids, engine, ...ownMaterials(texts), ...(prints ? { prints } : {}) }, accept: MEDIA_TYPE, signal,
   });
   return parseFrames(await response.arrayBuffer()).map((result, k) => ({ ...result, grid: grids[k] }));
 }
@@ -70,18 +77,21 @@ export const profileText = async (name) => (await request(`/api/printers/${name}
 
 // A printer is a name, or { profile: text }.
 const by = (printer) => (typeof printer === "string" ? { printer } : printer);
-export const toolpath = (grids, printer, signal) => post("/api/toolpath", { grids, ...by(printer) }, signal);
+const printOf = ([grids, printer, texts]) => ({ grids, ...by(printer), ...ownMaterials(texts) });
+
+/** A print is [grids, printer, texts of materials]. */
+export const toolpath = (print, signal) => post("/api/toolpath", printOf(print), signal);
 
 /** Return the file that prints grids: a Blob and its name. */
-export async function printFile(grids, printer, names, format) {
+export async function printFile(print, names, format) {
   const response = await request("/api/gcode", {
-    method: "POST", body: { grids, ...by(printer), names, format }, accept: "text/x.gcode, model/3mf",
+    method: "POST", body: { ...printOf(print), names, format }, accept: "text/x.gcode, model/3mf",
   });
   return { blob: await response.blob(), name: fileNameOf(response) ?? `grid.${format}` };
 }
 
 export const startOptimize = (task) => post("/api/optimize", task);
-export const startFea = (grids) => post("/api/fea", { grids });
+export const startFea = (grids, texts) => post("/api/fea", { grids, ...ownMaterials(texts) });
 
 /** Return how far a job is, with the steps that are new after the first `since`. */
 export const job = (id, { since = 0 } = {}) => json(`/api/jobs/${id}?since=${since}`);
@@ -123,9 +133,9 @@ export async function openFile(file, options = {}) {
 }
 
 /** Return a file of a result: a Blob and its name. */
-export async function exportFile(grid, format, { engine = "learned", name = "grid" } = {}) {
+export async function exportFile(grid, format, { engine = "learned", name = "grid", materials: texts } = {}) {
   const response = await request("/api/export", {
-    method: "POST", body: { grid, format, engine, name }, accept: "*/*",
+    method: "POST", body: { grid, format, engine, name, ...ownMaterials(texts) }, accept: "*/*",
   });
   return { blob: await response.blob(), name: fileNameOf(response) ?? `${name}${format}` };
 }

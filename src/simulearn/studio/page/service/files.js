@@ -1,12 +1,13 @@
 // Files in and out: designs and drawings of other programs, opening, dropping, pasting, saving, exporting, links.
 
-import { emptyDocument, readDocument, sameGrid, samePrinter } from "../document/document.js";
+import { emptyDocument, readDocument, sameGrid, sameMaterials, samePrinter } from "../document/document.js";
 import { encode } from "../document/link.js";
 import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
 import { download } from "./downloads.js";
 import { showDrawing } from "./drawings.js";
+import { isMaterial, openMaterial } from "./materials.js";
 import { isProfile, openProfile } from "./printers.js";
 
 const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,.html,.toml,application/json,image/svg+xml";
@@ -24,12 +25,12 @@ export function chooseFile() {
 
 let openings = 0; // only the last one counts
 
-/** Replace the design by that of a file, as one edit; a printer's profile takes the printer's place.
+/** Replace the design by that of a file, as one edit; a profile or material takes the place of its like.
  *
  * options: how a drawing is to be read; where its unit is not known, the page asks for it.
  */
 export async function open(file, options = {}) {
-  if (isProfile(file)) return openProfile(file);
+  if (isProfile(file)) return (await isMaterial(file) ? openMaterial : openProfile)(file);
   openings += 1;
   const turn = openings;
   const late = setTimeout(() => { state.opening = file.name; }, LATE);
@@ -56,11 +57,12 @@ export async function open(file, options = {}) {
 }
 
 /** Return the document of an opened file; a drawing keeps the material and the printer. */
-function documentOf({ grid, goals = [], name, printer, drawing }) {
+function documentOf({ kind, grid, goals = [], name, printer, drawing, materials }) {
   const { schema } = emptyDocument();
   const { material } = drawing ? state.document.grid : grid;
   const by = printer || state.document.printer;
-  return readDocument({ schema, name, grid: { ...grid, material }, goals, printer: by });
+  const own = kind === "document" ? materials : state.document.materials;
+  return readDocument({ schema, name, grid: { ...grid, material }, goals, printer: by, materials: own });
 }
 
 /** Say why a file cannot be opened, or ask for what is missing to open it. */
@@ -83,7 +85,7 @@ export function refuse(file, problem, options) {
 /** Show another design in place of the current one; undo brings that back. */
 export function place(document, label) {
   edit((before) => (sameGrid(before.grid, document.grid) && before.name === document.name
-    && samePrinter(before.printer, document.printer)
+    && samePrinter(before.printer, document.printer) && sameMaterials(before, document)
     && document.goals.length === 0 && before.goals.length === 0 ? before : document), { label });
   select({});
   state.placed += 1;
@@ -99,7 +101,8 @@ export function saveFile({ gridOnly = false } = {}) {
 
 /** Save the result of an engine in one of the server's formats. */
 export async function saveExport(format, engine) {
-  const { blob, name } = await exportFile(state.document.grid, format, { engine, name: fileName() });
+  const { grid, materials } = state.document;
+  const { blob, name } = await exportFile(grid, format, { engine, name: fileName(), materials });
   download(blob, name);
 }
 

@@ -7,7 +7,8 @@ export const FRAMES = 12;
  *
  * A result has the header's fields (ok, stable, bound_mm, warnings, ...); one that is `ok` has the
  * views `joints` (12, J, 8, 3), `beams` (12, B, 3, 4, 3) and, where the engine has stresses,
- * `mises` (12, B, 4, 4), all Float32Array. Nothing is copied.
+ * `mises` (12, B, 4, 4), all Float32Array; where prints were asked for, `prints` (T, B, 3, 3), the
+ * centres of the beams' sections in each. Nothing is copied.
  */
 export function parseFrames(buffer) {
   const bytes = new DataView(buffer);

@@ -25,7 +25,7 @@ export function freshPrint() {
 export function askPrint() {
   retries.drop();
   const { document } = state;
-  const { grid, printer } = document;
+  const { grid, printer, materials } = document;
   const update = (more) => {
     state.print = { ...NOTHING, layer: 1, travels: false, ...state.print, ...more };
   };
@@ -36,7 +36,7 @@ export function askPrint() {
   }
   if (freshPrint() && state.print.state !== "asking") return;
   update({ state: "asking", problem: null });
-  questions.ask((signal) => toolpath([grid], printer, signal), (answer, problem) => {
+  questions.ask((signal) => toolpath([[grid], printer, materials], signal), (answer, problem) => {
     if (problem) {
       // Its toolpath would be that of another design, or of another bed.
       update({ ...NOTHING, of: { grid, printer }, state: "failed", problem });
@@ -72,7 +72,7 @@ export function showTravels(travels) {
 
 /** Have the browser save the file that prints the current design: "gcode" or "gcode.3mf". */
 export async function downloadPrint(format) {
-  const { grid, printer, name } = state.document;
-  const file = await printFile([grid], printer, [fileName(name)], format);
+  const { grid, printer, materials, name } = state.document;
+  const file = await printFile([[grid], printer, materials], [fileName(name)], format);
   download(file.blob, file.name);
 }

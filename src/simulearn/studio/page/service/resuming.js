@@ -2,7 +2,7 @@
 // again when the page is loaded anew in the same tab. The tab's storage keeps its name and its document.
 
 import { watch } from "/libraries/vue.js";
-import { readDocument, sameGrid } from "../document/document.js";
+import { readDocument, sameGrid, sameMaterials } from "../document/document.js";
 import { state } from "../store.js";
 import { job as question } from "./api.js";
 import { resumeCheck } from "./checking.js";
@@ -46,7 +46,7 @@ function read() {
 
 /** Return the open document where a job is about its grid: then it is not of an earlier design. */
 function known(document) {
-  const alike = sameGrid(document.grid, state.document.grid)
+  const alike = sameGrid(document.grid, state.document.grid) && sameMaterials(document, state.document)
     && JSON.stringify(document.goals) === JSON.stringify(state.document.goals);
   return alike ? state.document : document;
 }

@@ -117,11 +117,11 @@ function unknown() {
 
 /** Begin a document without joints at an address of its own. */
 export function newDocument({ replace = false } = {}) {
-  const { grid: { material }, printer } = state.document;
+  const { grid: { material }, printer, materials } = state.document;
   begin(null);
   history[replace ? "replaceState" : "pushState"](null, "", "/");
   const empty = emptyDocument();
-  show({ ...empty, printer, grid: { ...empty.grid, material } });
+  show({ ...empty, printer, materials, grid: { ...empty.grid, material } });
 }
 
 /** Leave what is open; return a number that says which opening this is. */

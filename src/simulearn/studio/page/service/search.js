@@ -105,7 +105,8 @@ export function showStage(stage, label) {
     SHAPES.drop();
     return show();
   }
-  return SHAPES.ask((signal) => simulate([stage.grid], { signal }), (results) => {
+  const { materials } = search.document;
+  return SHAPES.ask((signal) => simulate([stage.grid], { materials, signal }), (results) => {
     if (!results?.[0].ok) return;
     [stage.result] = results;
     if (state.search?.stages?.includes(stage)) show();

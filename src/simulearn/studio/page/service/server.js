@@ -1,12 +1,9 @@
-// What the page asks the server for once: what it is, its library, materials. Until it answers.
+// What the page asks the server for once: what it is, and its library. Until it answers.
 
-import { watchEffect, shallowRef } from "/libraries/vue.js";
 import { state } from "../store.js";
-import { library, materials, version } from "./api.js";
+import { library, version } from "./api.js";
 
 const PAUSE = 1000; // ms between questions to a server that does not answer yet
-
-const known = shallowRef([]); // materials
 
 /** Return the answer to a question, put again until the server answers it. */
 export async function untilAnswered(question) {
@@ -25,12 +22,8 @@ export async function untilAnswered(question) {
 
 /** Fetch what the panels show of the server, and wait until its model is ready. */
 export async function startServer() {
-  watchEffect(() => {
-    state.material = known.value.find(({ name }) => name === state.document.grid.material) ?? null;
-  });
   state.server = await untilAnswered(version);
   if (state.library.length === 0) await loadLibrary();
-  known.value = (await untilAnswered(materials)).materials;
   while (!state.server.ready) {
     await pause(PAUSE);
     state.server = await untilAnswered(version);

@@ -29,7 +29,7 @@ export async function ask() {
     state.busy = true;
     const begun = performance.now();
     try {
-      const [result] = await simulate([document.grid]);
+      const [result] = await simulate([document.grid], { materials: document.materials });
       accept(document, result, performance.now() - begun);
     } catch (problem) {
       state.problem = problem;
@@ -45,7 +45,8 @@ export async function ask() {
   state.busy = false;
 }
 
-function accept(document, result, milliseconds) {
+/** Take over the outcome of a document. */
+export function accept(document, result, milliseconds) {
   state.connection = "online";
   state.problem = null;
   state.check = {

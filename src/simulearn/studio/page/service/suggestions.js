@@ -59,7 +59,8 @@ async function suggest(document, signal) {
   const found = ranking.best.map(({ grid, error_mm: error }) => ({
     grid: placedLike(document.grid, grid), error, result: null, picture: null,
   }));
-  const results = found.length ? await simulate(found.map(({ grid }) => grid), { signal }) : [];
+  const { materials } = document;
+  const results = found.length ? await simulate(found.map(({ grid }) => grid), { materials, signal }) : [];
   const cards = found.map((card, k) => ({
     ...card, result: results[k], changes: changesOf(document.grid, card.grid),
   })).filter(({ result }) => result.ok);

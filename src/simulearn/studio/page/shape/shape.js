@@ -1,6 +1,7 @@
 // The shape: the morphing grid in space, frame by frame, with what is written over it.
 
 import { computed, h, onBeforeUnmount, onMounted, ref, shallowRef, watch } from "/libraries/vue.js";
+import { freshSpread } from "../service/spread.js";
 import { preparing, select, stale, state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { deviation } from "./deviation.js";
@@ -51,6 +52,7 @@ export const Shape = {
     const other = computed(otherResult);
     const printing = computed(() => state.tab === "print" && Boolean(state.print?.toolpath));
     const goals = computed(() => state.tab === "goals");
+    const prints = computed(() => (state.tab === "check" && !state.preview && freshSpread()?.prints) || null);
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
     let [triad, dimmer, reader] = [null, 0, 0];
@@ -108,6 +110,7 @@ export const Shape = {
         viewer.value.overlay(view.overlay ? other.value : null);
         colour();
       });
+      watch(prints, (centres) => viewer.value.setPrints(centres), { immediate: true });
       watch(() => view.overlay, (on) => viewer.value.overlay(on ? other.value : null));
       watch(() => view.colour, colour);
       watch(() => view.ghost, (on) => viewer.value.setGhost(on));

@@ -8,6 +8,7 @@ import { createCamera } from "./camera.js";
 import { createGround } from "./ground.js";
 import { pick } from "./picking.js";
 import { createPrint } from "./print.js";
+import { createPrints } from "./prints.js";
 import { createStage } from "./stage.js";
 import { readTheme, watchTheme } from "./theme.js";
 import { boundsOf, cornersOf, LAST } from "./topology.js";
@@ -37,7 +38,7 @@ const passive = (grid) => grid && { ...grid, actuators: [] };
  */
 export function createViewer(container, { events = {}, still = () => false } = {}) {
   let [pointer, hovering, pressed, fitted, disposed] = [null, 0, null, null, false];
-  let [overlaid, gizmo, notes, kept] = [null, null, [], null];
+  let [overlaid, gizmo, notes, kept, spread] = [null, null, [], null, null];
   let [printing, fresh, roomy, frame] = [false, true, false, LAST];
   let held = false; // whether a hand holds something: then the view stays as it is
   const shows = { ghost: true, ground: true };
@@ -63,10 +64,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
   const other = createBody({ opacity: 0, edges: 0.75, one: "target" }); // two surfaces so near would flicker
   const ground = createGround();
   const print = createPrint();
+  const prints = createPrints();
   const annotations = createAnnotations(container);
-  const parts = [body, ghost, other, ground, print];
+  const parts = [body, ghost, other, ground, print, prints];
   ghost.group.renderOrder = 3;
-  stage.scene.add(ground.group, body.group, ghost.group, other.group, print.group);
+  stage.scene.add(ground.group, body.group, ghost.group, other.group, print.group, prints.group);
   /** Show what is to be seen now: the print, or the shape with what belongs to it. */
   const arrange = () => {
     const shape = Boolean(body.shown) && !printing;
@@ -74,6 +76,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
     ground.group.visible = shape && shows.ground;
     ghost.group.visible = shape && shows.ghost && frame > UNMOVED;
     other.group.visible = shape && Boolean(overlaid);
+    prints.group.visible = shape && Boolean(spread) && frame === LAST; // prints are known in the last frame only
     print.group.visible = printing;
     stage.invalidate();
   };
@@ -225,6 +228,12 @@ export function createViewer(container, { events = {}, still = () => false } = {
     overlay(result) {
       overlaid = body.shown && result;
       other.show(overlaid, body.shown?.grid ?? null);
+      arrange();
+    },
+    /** Draw prints of the shown design (T, B, 3, 3) around its last frame; null for none. */
+    setPrints(centres) {
+      spread = centres;
+      prints.show(centres);
       arrange();
     },
     /** Show annotations; `handles` (project -> items) are made anew for every drawing. */

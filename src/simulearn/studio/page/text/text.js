@@ -4,6 +4,7 @@
 import { view } from "../store.js";
 import { common } from "./common.js";
 import { drawing } from "./drawing.js";
+import { material } from "./material.js";
 import { panels } from "./panels.js";
 import { plan } from "./plan.js";
 import { print } from "./print.js";
@@ -11,7 +12,7 @@ import { repairs } from "./repairs.js";
 import { shape } from "./shape.js";
 
 export const LANGUAGES = { en: "English", de: "Deutsch" };
-const PARTS = { common, drawing, panels, plan, print, repairs, shape };
+const PARTS = { common, drawing, material, panels, plan, print, repairs, shape };
 
 /** Return the string of a key such as "plan.draw", with {name} replaced by values.name. */
 export function t(key, values = {}) {

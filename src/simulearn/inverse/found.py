@@ -1,0 +1,49 @@
+"""What a search found."""
+
+from dataclasses import dataclass
+
+from simulearn.display import Displayed
+from simulearn.errors import Message
+from simulearn.grid import Grid
+from simulearn.inverse.checking import Check
+from simulearn.inverse.keeping import Step
+from simulearn.inverse.probability import Probability
+
+
+@dataclass(frozen=True, eq=False)
+class SearchResult(Displayed):
+    """The result of a search.
+
+    Attributes:
+        check: the best design, by the engine and by finite elements; None if no check was made.
+        grid: the best design.
+        error_mm: of it, by the engine that was used.
+        steps: the iterations, 0 being the beginning.
+        checks: by finite elements, those of earlier runs among them.
+        seconds: of searching and checking.
+        interrupted: whether it was stopped by the user.
+        warnings: about the goals.
+        probability: how often prints of it meet the goals, where the task asks anything of prints.
+        nominal: the same of the best design without regard to prints, of a robust search.
+    """
+
+    check: Check | None
+    grid: Grid
+    error_mm: float
+    steps: tuple[Step, ...]
+    checks: tuple[Check, ...]
+    seconds: float
+    interrupted: bool
+    warnings: tuple[Message, ...] = ()
+    probability: Probability | None = None
+    nominal: Probability | None = None
+
+    @property
+    def designs(self) -> int:
+        """How many designs were scored."""
+        return self.steps[-1].designs
+
+    @property
+    def iterations(self) -> int:
+        """Of the method."""
+        return self.steps[-1].iteration

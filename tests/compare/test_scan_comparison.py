@@ -1,0 +1,73 @@
+"""Scans of prints in any pose, with a table, strays and holes: the joints are found again."""
+
+import numpy as np
+import printed
+import pytest
+
+from simulearn.compare import Scan, compare
+from simulearn.compare.aligning import rigid
+from simulearn.compare.clutter import without_table
+from simulearn.errors import InputError
+
+HIDDEN = printed.shape(printed.material(strain=1.15))
+
+
+def compared(points, normals=None):
+    return compare(printed.grid(), Scan(points, normals), printed.Simulator(), explain=False)
+
+
+def errors(found, result):
+    """Return how far joints are from where they are, brought into the comparison's frame, mm."""
+    seen = found.deviation.measured
+    places = result.centres[-1][seen]
+    pose = rigid(places, found.deviation.simulated[seen])
+    return np.linalg.norm(found.deviation.joints[seen] - pose(places), axis=1)
+
+
+def codes(found):
+    return {m.code for m in found.messages}
+
+
+def test_a_scan_on_its_table_with_a_hole_and_strays():
+    rng = np.random.default_rng(1)
+    points, _ = printed.surface(HIDDEN, hole=(HIDDEN.centres[-1][8], 22.0))
+    found = compared(printed.moved(np.r_[points, printed.table(points, rng, -3.0)], 5) / 1000)
+    assert codes(found) == {"measurement-unit", "scan-table", "scan-strays", "joints-missing"}
+    assert (~found.deviation.measured).nonzero()[0].tolist() == [8]
+    assert errors(found, HIDDEN).max() < 0.3
+    assert found.noise == pytest.approx(0.15, abs=0.06)
+
+
+def test_a_mirrored_scan_with_its_normals_turned_in():
+    points, normals = printed.surface(HIDDEN)
+    turn, _ = printed.motion(7)
+    found = compared(printed.moved(points * [1, 1, -1], 7), -(normals * [1, 1, -1]) @ turn.T)
+    assert "pose-mirrored" in codes(found)
+    assert errors(found, HIDDEN).max() < 0.2
+    measured, simulated = np.degrees(found.deviation.curvature).T
+    bent = abs(simulated) > 0.2
+    assert (measured[bent] / simulated[bent]) == pytest.approx(1.15, abs=0.06)
+    off = np.linalg.norm((found.deviation.stations - found.deviation.expected)[:, 1], axis=-1)
+    assert (found.deviation.beams[:, 0] > 0).all()
+    assert (found.deviation.beams[:, 1] < 2 * off.max() + 3).all()
+
+
+def test_the_table_is_taken_off_and_a_flat_grid_is_none():
+    rng = np.random.default_rng(2)
+    points, _ = printed.surface(printed.shape())
+    flat = points * [1, 1, 1e-3]
+    both = np.r_[flat, printed.table(flat, rng, -2.5)]
+    kept, messages = without_table(Scan(both), printed.grid(), 7.2)
+    assert [m.code for m in messages] == ["scan-table"]
+    assert len(kept.points) == pytest.approx(len(flat), rel=0.05)
+    assert without_table(Scan(flat), printed.grid(), 7.2)[1] == []
+
+
+def test_scans_that_cannot_be_compared():
+    points, _ = printed.surface(printed.shape(), count=1000)
+    with pytest.raises(InputError, match="the scan has 1000 points; at least 1500"):
+        compared(points)
+    ball = np.random.default_rng(0).normal(size=(4000, 3))
+    ball *= 55 / np.linalg.norm(ball, axis=1, keepdims=True)
+    with pytest.raises(InputError, match="does not fit the grid"):
+        compared(ball)
