@@ -150,7 +150,8 @@ class Task(_Part):
     @property
     def _design(self) -> Grid:
         own = self._material
-        return grid_from_dict(self.grid, paths=True, materials=own and {own.name: own})
+        materials = {} if own is None else {own.name: own}
+        return grid_from_dict(self.grid, paths=True, materials=materials)
 
     @property
     def aims(self) -> Goals:

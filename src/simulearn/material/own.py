@@ -6,7 +6,7 @@ names of the materials that come along are theirs.
 
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from typing import Any
 
@@ -22,6 +22,14 @@ MOST_NAME = 80  # characters
 MOST_TITLE = 200
 MOST_DOTS = 300  # on one line: reading tables so deep takes long
 MOST_SHOWN = 60  # characters of a value in a message
+# Numbers far beyond what anybody prints overflow, or make a print of millions of strokes.
+SIZES = (1e-15, 1e9)  # of a number that is not 0
+LENGTHS: dict[tuple[str | int, ...], tuple[float, float]] = {  # mm
+    ("section", "width"): (0.1, 100.0),
+    ("section", "thickness"): (0.1, 100.0),
+    ("print", "layer"): (0.01, 10.0),
+    ("print", "line_width"): (0.05, 10.0),
+}
 
 
 def material_text(name: str) -> str:
@@ -80,6 +88,12 @@ def own_material(text: str, place: str = "material") -> Material:
         first = error.errors(include_url=False)[0]
         where = _place(place, _keys(first["loc"], data))
         raise InputError(f"{where} {_reason(first)}", "material-file", where) from error
+    for keys, number in _numbers(data):
+        least, most = LENGTHS.get(keys, SIZES)
+        if number and not least <= abs(number) <= most:
+            where = _place(place, keys)
+            line = f"{where} is {number:g}; its size lies between {least:g} and {most:g}"
+            raise InputError(line, "material-file", where)
     name, where = material.name, f"{place}.name"
     if not (name and len(name) <= MOST_NAME and name.isprintable() and is_name(name)):
         line = f"{where} is {name[:MOST_SHOWN]!r}; it has 1 to {MOST_NAME} characters, no slash"
@@ -110,6 +124,18 @@ def _tables(text: str, place: str) -> dict[str, Any]:
         raise InputError(f"{place} is not valid TOML: {error}", "material-file", where) from error
     except RecursionError as error:
         raise InputError(f"{place} is nested too deeply", "material-file", place) from error
+
+
+def _numbers(
+    data: Any, keys: tuple[str | int, ...] = ()
+) -> Iterator[tuple[tuple[str | int, ...], float]]:
+    """Yield the numbers of tables with their keys."""
+    if isinstance(data, dict | list):
+        pairs = data.items() if isinstance(data, dict) else enumerate(data)
+        for key, value in pairs:
+            yield from _numbers(value, (*keys, key))
+    elif isinstance(data, int | float) and not isinstance(data, bool):
+        yield keys, float(data)
 
 
 def _keys(keys: Iterable[str | int], data: dict[str, Any]) -> list[str | int]:

@@ -42,7 +42,7 @@ def check_all(
         grids: the designs.
         training: sizes that the answering model has learnt; designs outside are warned of.
     """
-    materials: dict[str, Material | InputError] = {}
+    materials: dict[str | Material, Material | InputError] = {}
     groups: dict[Any, list[int]] = defaultdict(list)
     for k, grid in enumerate(grids):
         counts = len(grid.joints), len(grid.actuators)
@@ -82,7 +82,9 @@ def _usual(
     return checks.usual.tolist()
 
 
-def _material(name: str, known: dict[str, Material | InputError]) -> Material | InputError:
+def _material(
+    name: str | Material, known: dict[str | Material, Material | InputError]
+) -> Material | InputError:
     """Return a material, each read once, or why there is none."""
     if name not in known:
         try:

@@ -1,7 +1,6 @@
 // The shape: the morphing grid in space, frame by frame, with what is written over it.
 
 import { computed, h, onBeforeUnmount, onMounted, ref, shallowRef, watch } from "/libraries/vue.js";
-import { freshSpread } from "../service/spread.js";
 import { preparing, select, stale, state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { deviation } from "./deviation.js";
@@ -37,6 +36,13 @@ function otherResult() {
   return fea.document.grid === answer.document.grid ? fea.result : null;
 }
 
+/** Return the axes of prints of the shown grid, where they were asked for. */
+function shownPrints() {
+  const { spread, answer, tab, preview } = state;
+  if (tab !== "check" || preview || !spread?.result?.prints || !answer) return null;
+  return spread.document.grid === answer.document.grid ? spread.result.prints : null;
+}
+
 export const Shape = {
   setup() {
     const container = ref(null);
@@ -52,7 +58,7 @@ export const Shape = {
     const other = computed(otherResult);
     const printing = computed(() => state.tab === "print" && Boolean(state.print?.toolpath));
     const goals = computed(() => state.tab === "goals");
-    const prints = computed(() => (state.tab === "check" && !state.preview && freshSpread()?.prints) || null);
+    const prints = computed(shownPrints);
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
     let [triad, dimmer, reader] = [null, 0, 0];
