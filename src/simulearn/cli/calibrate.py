@@ -9,6 +9,7 @@ import typer
 from rich.table import Table
 
 from simulearn import outputs
+from simulearn.cli import calibrate_photo
 from simulearn.cli.base import Json, app, err, out, print_files, warn
 from simulearn.errors import InputError
 from simulearn.files import replacing
@@ -21,6 +22,7 @@ calibrate = typer.Typer(
     no_args_is_help=True,
 )
 app.add_typer(calibrate, name="calibrate")
+calibrate_photo.register(calibrate)
 
 PRINTS = (".gcode", ".gco", ".g", ".gcode.3mf")
 MAPS = (".svg", ".png", ".pdf")
