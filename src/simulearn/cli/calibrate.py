@@ -1,4 +1,4 @@
-"""Commands that fit a material to measured prints: plate, fit."""
+"""Commands that fit a material to measured prints: plate, fit, and those of photos."""
 
 import json
 from dataclasses import asdict
