@@ -72,7 +72,7 @@ def _marker(number: int) -> PathPatch:
     parts = getattr(whole, "geoms", [whole])
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
     path = Path.make_compound_path(*(Path(np.array(ring.coords), closed=True) for ring in rings))
-    return PathPatch(path, fc=BLACK, lw=0)
+    return PathPatch(path, fc=BLACK, lw=0, snap=False)
 
 
 def _frame(ax: Any, dark: bool) -> None:
