@@ -55,7 +55,7 @@ class Deviation:
     @property
     def measured(self) -> np.ndarray:
         """(J,) whether a joint was measured."""
-        return np.isfinite(self.joints).all(axis=1)
+        return np.asarray(np.isfinite(self.joints).all(axis=1))
 
 
 def deviation_of(
