@@ -212,5 +212,10 @@ def test_documents_keep_their_materials(client):
     assert problem(refused, 422, "material-file")["where"].startswith("materials[0].law.poisson")
 
 
+def test_a_material_that_takes_too_long_is_stopped():
+    hasty = Client(Settings(simulation_seconds=0.0))
+    problem(hasty.post("/api/simulate", BODY | {"engine": "fea"}), 422, "time-over")
+
+
 def _arrays(grid):
     return {key: grid[key] for key in ("joints", "beams", "actuators", "fixed")}

@@ -27,6 +27,7 @@ class Settings:
         fea_beams: of the one grid that finite elements answer at once; larger ones are jobs.
         rank_beams: of a grid whose modifications are ranked.
         simulations: computed at the same time.
+        simulation_seconds: longest time of one, also of the first, which compiles kernels.
         waiting: requests that may wait for one of them.
         job_workers: jobs computed at the same time; each may use more than one core.
         jobs_waiting: jobs that may wait.
@@ -47,6 +48,7 @@ class Settings:
     fea_beams: int = 40
     rank_beams: int = 100
     simulations: int = 2
+    simulation_seconds: float = 300.0
     waiting: int = 32
     job_workers: int = field(default_factory=lambda: max(1, cores() // 2))
     jobs_waiting: int = 20

@@ -34,7 +34,8 @@ class Simulations:
     """
 
     def __init__(self, settings: Settings) -> None:
-        self._turns = Turns("simulation", settings.simulations, settings.waiting)
+        seconds = settings.simulation_seconds
+        self._turns = Turns("simulation", settings.simulations, settings.waiting, seconds)
         self._warming, self._warm = threading.Lock(), threading.Event()
 
     @property
