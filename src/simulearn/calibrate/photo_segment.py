@@ -90,7 +90,8 @@ def relative_light(light: Light, pixels_in_mm: float, dark: bool) -> Light:
         numbers = np.linalg.lstsq(terms[kept], level[..., k].ravel()[kept], rcond=None)[0]
         small = (_terms(fine_x, fine_y) @ numbers).reshape(40, 40)
         sheet[..., k] = _enlarged(small, height, width)
-    return light / np.maximum(sheet, 2e-3)
+    even: Light = (light / np.maximum(sheet, 2e-3)).astype(np.float32)
+    return even
 
 
 def _terms(x: Array, y: Array) -> Array:
@@ -132,7 +133,7 @@ def find_strip(
     import cv2
 
     light = np.where(beyond[..., None], np.float32(1), light)
-    light = cv2.medianBlur(np.ascontiguousarray(light), 3)
+    light = np.asarray(cv2.medianBlur(np.ascontiguousarray(light), 3), np.float32)
     width = thickness * pixels_in_mm
     bands = [
         band
