@@ -1,4 +1,4 @@
-"""Blind test of the calibration: do intervals cover hidden materials, and are designs predicted?
+"""Test the calibration blindly: intervals that cover hidden materials, designs predicted.
 
 Members of the family are drawn, with the section of the base. What ruler and straight edge would
 read of their strips is simulated and given noise; the fit sees the form only. Then random 2 x 2
@@ -79,10 +79,10 @@ def main() -> None:
 
     report = Report("calibration", "Calibration in blind tests")
     report.say(
-        f"{args.members} materials were drawn from the family (`material.Family`), with the section of "
-        f"the base. Their strips were simulated, {args.repeats} repeats each, and read with "
-        f"a noise of {args.noise:g} mm on every value. Materials, readings and predictions are all "
-        "of one simulator: this is how well a fit does where the physics is right."
+        f"{args.members} materials were drawn from the family (`material.Family`), with the "
+        f"section of the base. Their strips were simulated, {args.repeats} repeats each, and read "
+        f"with a noise of {args.noise:g} mm on every value. Materials, readings and predictions "
+        "are all of one simulator: this is how well a fit does where the physics is right."
     )
     rows = []
     inside = np.array(
@@ -107,8 +107,8 @@ def main() -> None:
         f"All intervals of 90 % together cover {100 * inside.mean():.1f} % (wanted {WANTED} %)."
     )
     report.say(
-        f"{args.designs} random 2 x 2 designs in each: mean distance of joint corners from those in "
-        f"the hidden material, % of dimension (floor {FLOOR:g}, aim {AIM:g})."
+        f"{args.designs} random 2 x 2 designs in each: mean distance of joint corners from those "
+        f"in the hidden material, % of dimension (floor {FLOOR:g}, aim {AIM:g})."
     )
     report.table(
         ("material", "mean", "median", "nine of ten below"),

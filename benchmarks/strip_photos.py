@@ -77,7 +77,8 @@ class Strip:
         """Return the outline (N, 2) of its side face, mm, counter-clockwise."""
         half = self.thickness / 2
         right, left = self.line(-half, 0.25), self.line(half, 0.25)
-        return np.concatenate([right, _between(right[-1], left[-1]), left[::-1]])
+        ends = _between(right[-1], left[-1]), _between(left[0], right[0])
+        return np.concatenate([right, ends[0], left[::-1], ends[1]])
 
     def measures(self) -> tuple[float, float]:
         """Return chord and rise of its hollow side, mm; the rise without a sign."""

@@ -61,6 +61,8 @@ def _of_module(tree: ast.Module, file: str) -> Iterator[str]:
         if isinstance(value, ast.Name) and value.id in HANDED_ON:
             yield from (text for names, texts in assigned if value.id in names for text in texts)
             continue
+        if isinstance(value, ast.Name) and isinstance(constants.get(value.id), ast.Constant):
+            value = constants[value.id]
         texts = list(_texts(value))
         if not texts:
             raise ValueError(f"{file}, line {node.lineno}: no code is known of {name}")

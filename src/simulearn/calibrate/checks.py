@@ -22,8 +22,8 @@ SLACK = 2.0  # mm
 SURE = 2.0  # mm, a rise of less may have either sign
 OUTLIER = 5.0  # standard deviations of a reading from the median of its repeats
 LEAST_SD = 0.3  # mm
-# Of three normal numbers the middle distance from their median is 0.4 standard deviations (median).
-OF_MIDDLE = 2.5
+# Of three normal numbers the median distance from their median is in the median 0.364 sd.
+OF_MIDDLE = 1 / 0.364
 SCATTER = 0.1  # of a rise, by which strips may differ
 
 

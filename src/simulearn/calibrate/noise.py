@@ -80,23 +80,23 @@ def estimate(readings: list[Numbers], slopes: list[Numbers], lengths: list[Numbe
     freedom = LIKELY + free + 2 * sum(len(one) - 1 for one, _ in spread)
 
     # Of each strip: repeats less one, g'g, and squares of the deviations along g and across it.
-    told = []
+    found = []
     for one, slope in spread:
-        g = float(slope @ slope)
-        along = float(((one @ slope) ** 2).sum()) / max(g, TINY)
-        told.append((len(one) - 1, g, along, float((one**2).sum()) - along))
-    many, g, along, across = np.array(told).reshape(-1, 4).T
+        size_of = float(slope @ slope)
+        on_slope = float(((one @ slope) ** 2).sum()) / max(size_of, TINY)
+        found.append((len(one) - 1, size_of, on_slope, float((one**2).sum()) - on_slope))
+    many, size, along, across = np.array(found).reshape(-1, 4).T
 
     logs = LOG_RULER + np.linspace(-SPAN, SPAN, READINGS)
     scatters = np.append(0.0, np.geomspace(1e-3, MOST_SCATTER, POINTS))
     s2, t2 = np.exp(2 * logs)[:, None, None], scatters[:, None] ** 2
     # The eigenvalues of s^2 I + t^2 g g'; minus the logarithm of likelihood and prior.
-    wide = s2 + t2 * g
+    wide = s2 + t2 * size
     cost = (many * np.log(wide * s2) + along / wide + across / s2).sum(axis=2) / 2
     cost += (free * logs + squares * np.exp(-2 * logs) / 2)[:, None]
     cost += (((logs - LOG_RULER) / DOUBT) ** 2 / 2)[:, None]
 
-    row, best = np.unravel_index(int(cost.argmin()), cost.shape)
+    least, best = divmod(int(cost.argmin()), len(scatters))
     likely = scatters[cost.min(axis=0) <= cost.min() + WITHIN]
-    low, high = (float(likely.min()), float(likely.max())) if told else (0.0, MOST_SCATTER)
-    return Noise(float(np.exp(logs[row])), float(scatters[best]), low, high, freedom)
+    low, high = (float(likely.min()), float(likely.max())) if found else (0.0, MOST_SCATTER)
+    return Noise(float(np.exp(logs[least])), float(scatters[best]), low, high, freedom)

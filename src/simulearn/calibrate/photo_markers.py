@@ -5,6 +5,7 @@ the sides meet, since blur rounds a corner but shifts no side.
 """
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +34,7 @@ def find_markers(photo: Photo) -> tuple[dict[int, Array], bool]:
     """
     import cv2
 
-    grey = cv2.cvtColor(photo.pixels, cv2.COLOR_RGB2GRAY)
+    grey: Any = cv2.cvtColor(photo.pixels, cv2.COLOR_RGB2GRAY)
     found = _detected(grey, DETECTION)
     if len(found) < MARKERS:
         found = _detected(grey, max(photo.size)) | found
@@ -46,7 +47,7 @@ def find_markers(photo: Photo) -> tuple[dict[int, Array], bool]:
     return refined, dark
 
 
-def _detected(grey: NDArray[np.uint8], longest: int) -> dict[int, Array]:
+def _detected(grey: Any, longest: int) -> dict[int, Array]:
     """Return the corners of all markers, found in a picture of so many pixels in length."""
     import cv2
 

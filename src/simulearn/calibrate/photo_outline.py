@@ -150,7 +150,7 @@ def _from_above(
         cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_REPLICATE,
     )
-    return picture, beyond
+    return np.asarray(picture, np.float32), np.asarray(beyond)
 
 
 def _around(

@@ -28,6 +28,7 @@ DARKER = (0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75)  # part of the sheet's light
 BRIGHTER = (0.1, 0.18, 0.3, 0.45)  # part of the brightest
 LONG = 4.5  # times its width that a strip is long
 WIDTHS = (0.55, 1.9)  # of the expected thickness; the wall that is seen of a strip adds to it
+BORDER = 4  # pixels, nearer to the edge of what is searched a part is cut off by it
 UNEVEN = 0.16  # deviation of the width over the width, at most
 SECOND = 0.5  # of the length of the strip, another part that is a strip too
 
@@ -89,7 +90,8 @@ def relative_light(light: Light, pixels_in_mm: float, dark: bool) -> Light:
         numbers = np.linalg.lstsq(terms[kept], level[..., k].ravel()[kept], rcond=None)[0]
         small = (_terms(fine_x, fine_y) @ numbers).reshape(40, 40)
         sheet[..., k] = _enlarged(small, height, width)
-    return light / np.maximum(sheet, 2e-3)
+    even: Light = (light / np.maximum(sheet, 2e-3)).astype(np.float32)
+    return even
 
 
 def _terms(x: Array, y: Array) -> Array:
@@ -131,7 +133,7 @@ def find_strip(
     import cv2
 
     light = np.where(beyond[..., None], np.float32(1), light)
-    light = cv2.medianBlur(np.ascontiguousarray(light), 3)
+    light = np.asarray(cv2.medianBlur(np.ascontiguousarray(light), 3), np.float32)
     width = thickness * pixels_in_mm
     bands = [
         band
@@ -141,7 +143,12 @@ def find_strip(
     even = [band for band in bands if band.uneven < UNEVEN]
     if not even:
         raise _nothing(bands, dark)
-    inner = [band for band in even if not band.edge]
+    cut = [band for band in bands if band.edge]
+    inner = [
+        band
+        for band in even
+        if not band.edge and not any((band.mask & other.mask).any() for other in cut)
+    ]
     if not inner:
         raise InputError(
             "the strip reaches the edge of where it is looked for; lay it in the middle of the "
@@ -185,8 +192,9 @@ def _bands(mask: Mask, kind: str, width: float, beyond: Mask, apart: Mask | None
         if apart is not None and (one & apart).any():
             continue
         one = ndimage.binary_fill_holes(one)
-        edge = left == 0 or top == 0 or left + wide == mask.shape[1] or top + high == mask.shape[0]
-        edge = edge or bool((ndimage.binary_dilation(one, iterations=2) & beyond).any())
+        right, bottom = mask.shape[1] - left - wide, mask.shape[0] - top - high
+        edge = min(left, top, right, bottom) < BORDER
+        edge = edge or bool((ndimage.binary_dilation(one, iterations=BORDER) & beyond).any())
         band = _measured(one, kind, edge)
         if band is None or not WIDTHS[0] * width < band.width < WIDTHS[1] * width:
             continue

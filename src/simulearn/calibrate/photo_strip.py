@@ -121,6 +121,7 @@ def fit_curve(points: Array, middle: Array, thickness: float) -> Fit:
     guess = _first_guess(middle, thickness)
     used = np.ones(len(points), bool)
     for _ in range(3):
+        guess = _ended(guess, points)
         scales = np.concatenate([[1, 1, 0.05, 1, 0.3], np.full(KNOTS, 0.01)])
         numbers = least_squares(
             _residuals,
@@ -143,6 +144,29 @@ def fit_curve(points: Array, middle: Array, thickness: float) -> Fit:
         used = (np.maximum(from_end, from_side) > CORNER) & (distance < far)
     off = curve.distances(points[used])
     return Fit(curve, used, float(np.sqrt((off**2).mean())))
+
+
+def _ended(numbers: Array, points: Array) -> Array:
+    """Return the numbers of a strip with its ends where those of the outline are.
+
+    A strip that is too long has no points beside its ends to pull them in.
+    """
+    curve = _curve(numbers)
+    along, aside = curve.along_and_aside(points)
+    across = np.abs(aside) < 0.35 * curve.thickness  # only the ends of an outline are there
+    first = across & (along < curve.length / 2)
+    last = across & (along >= curve.length / 2)
+    if not first.any() or not last.any():
+        return numbers
+    begin, end = float(np.median(along[first])), float(np.median(along[last]))
+    at = (np.linspace(begin, end, KNOTS) / curve.length).clip(0, 1)
+    bend = np.interp(at, np.linspace(0, 1, KNOTS), curve.curvature)
+    part = np.clip(begin / curve.length, 0, 1) * STEPS
+    near = int(part)
+    heading = curve.angle[near]
+    ahead = begin - near * curve.length / STEPS
+    start = curve.line[near] + ahead * np.array([np.cos(heading), np.sin(heading)])
+    return np.concatenate([start, [heading, end - begin, curve.thickness], bend])
 
 
 def _curve(numbers: Array) -> Curve:

@@ -123,6 +123,13 @@ def make_plate(printer: Printer, material: str = "pla-hot-water", repeats: int =
                 "calibration-bed",
                 "repeats",
             ) from error
+        if "larger than" in str(error):
+            longest = max(record.length(base.section.width) for record in strips.values())
+            raise InputError(
+                f"the longest strip is {longest:g} mm; the bed of {printer.name} is smaller",
+                "calibration-bed",
+                "printer",
+            ) from error
         raise
     form = Form(material=material, printer=printer.name, strips=strips)
     return Plate(job, form, {k: r.length(base.section.width) for k, r in strips.items()})

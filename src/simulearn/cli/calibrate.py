@@ -1,4 +1,4 @@
-"""Commands that fit a material to measured prints: plate, fit."""
+"""Commands that fit a material to measured prints: plate, fit, and those of photos."""
 
 import json
 from dataclasses import asdict
@@ -9,6 +9,7 @@ import typer
 from rich.table import Table
 
 from simulearn import outputs
+from simulearn.cli import calibrate_photo
 from simulearn.cli.base import Json, app, err, out, print_files, warn
 from simulearn.errors import InputError
 from simulearn.files import replacing
@@ -21,6 +22,7 @@ calibrate = typer.Typer(
     no_args_is_help=True,
 )
 app.add_typer(calibrate, name="calibrate")
+calibrate_photo.register(calibrate)
 
 PRINTS = (".gcode", ".gco", ".g", ".gcode.3mf")
 MAPS = (".svg", ".png", ".pdf")

@@ -149,7 +149,8 @@ def _placed(
     measured: JointPlaces, simulated: Numbers, grid: Grid, result: Result
 ) -> tuple[Numbers, list[Message]]:
     """Return the measured places (J, 3) in the frame of the simulation, NaN where there is none."""
-    places, numbers, messages = measured.places, measured.numbers, []
+    places, numbers = measured.places, measured.numbers
+    messages: list[Message] = []
     if numbers is not None:
         numbers, places, messages = _numbered(numbers, places, grid)
     _enough(places, result.grid)

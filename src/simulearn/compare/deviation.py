@@ -55,7 +55,7 @@ class Deviation:
     @property
     def measured(self) -> np.ndarray:
         """(J,) whether a joint was measured."""
-        return np.isfinite(self.joints).all(axis=1)
+        return np.asarray(np.isfinite(self.joints).all(axis=1))
 
 
 def deviation_of(
@@ -87,11 +87,13 @@ def deviation_of(
     every[none] = 0.0  # so that means of nothing make no noise
     beams = np.stack([np.nanmean(every, axis=1), np.nanmax(every, axis=1)], axis=1)
     beams[none] = np.nan
-    curvature = np.stack([_curvature(places, up[:, 1]) for places in (stations, expected)], axis=1)
+    curvature = np.stack(
+        [curvature_of(places, up[:, 1]) for places in (stations, expected)], axis=1
+    )
     return Deviation(joints, simulated, stations, expected, beams, curvature)
 
 
-def _curvature(places: Numbers, up: Numbers) -> Numbers:
+def curvature_of(places: Numbers, up: Numbers) -> Numbers:
     """Return the curvature (B,) of beams through three places (B, 3, 3), + towards up (B, 3).
 
     Of the circle through a chord c with a sagitta s: 8 s / (c^2 + 4 s^2).

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from simulearn.compare.changes import Parameter, parameters, possible, steps
@@ -22,7 +23,7 @@ from simulearn.material import Material
 
 ALIKE = 0.95  # cosine of changes of shape that cannot be told apart
 
-Simulate = Callable[[Sequence[Material]], tuple[Numbers, Numbers]]
+Simulate = Callable[[Sequence[Material]], tuple[Numbers, NDArray[np.bool_]]]
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Explanation:
 def simulated_by(grid: Grid) -> Simulate:
     """Return the function that simulates a grid in materials: joints and middles of beams."""
 
-    def simulate(materials: Sequence[Material]) -> tuple[Numbers, Numbers]:
+    def simulate(materials: Sequence[Material]) -> tuple[Numbers, NDArray[np.bool_]]:
         from simulearn.simulate.members import last_frames
 
         prints = last_frames(grid, materials)
@@ -179,11 +180,11 @@ class _Curve:
             ends = sorted((self.nominal, aim + (aim - self.nominal) / 2))
             bounds = (ends[0] - 0.2 * self.parameter.step, ends[1] + 0.2 * self.parameter.step)
         edges = (low - wide / 4, high + wide / 4)  # shapes far beyond the family are not looked at
-        bounds = tuple(possible(self.parameter, float(np.clip(x, *edges))) for x in bounds)
-        if bounds[1] - bounds[0] < 1e-9:
-            return bounds[0]
+        least, most = (possible(self.parameter, float(np.clip(x, *edges))) for x in bounds)
+        if most - least < 1e-9:
+            return least
         found = minimize_scalar(
-            self.left, bounds=bounds, args=(measured,), method="bounded",
+            self.left, bounds=(least, most), args=(measured,), method="bounded",
             options={"xatol": 1e-4 * wide},
         )  # fmt: skip
         return float(found.x)

@@ -93,7 +93,7 @@ def _seeds(points: Numbers, simulated: Numbers) -> list[Indices]:
     for turn, centre in zip(turns, centres, strict=True):
         moved = (points - middle) @ turn.T + centre
         scores.append(np.sqrt(cdist(moved, simulated).min(axis=1)).sum())
-    seeds = []
+    seeds: list[Indices] = []
     for k in np.argsort(scores, kind="stable")[: 4 * REFINED]:
         moved = (points - middle) @ turns[k].T + centres[k]
         _, joints = linear_sum_assignment(cdist(moved, simulated) ** 2)

@@ -170,7 +170,7 @@ def write_joints(comparison: Comparison, path: Path | str) -> None:
             table.writerow([j, *(f"{x + 0.0:.4f}" for x in places)])
 
 
-def _number(x: float) -> float | None:
+def _number(x: float | np.floating[Any]) -> float | None:
     return round(float(x), 6) + 0.0 if np.isfinite(x) else None
 
 

@@ -33,9 +33,9 @@ def read_scan(path: Path) -> Scan:
     data = _bytes(path)
     if data[:40].startswith(b"version https://git-lfs"):
         raise InputError(f"{path}: is a pointer of Git LFS and no scan; `git lfs pull`", "scan")
-    more = {"skip_materials": True} if ending == "obj" else {}
+    more: Any = {"skip_materials": True} if ending == "obj" else {}
     try:
-        shape = trimesh.load(BytesIO(data), file_type=ending, process=False, **more)
+        shape: Any = trimesh.load(BytesIO(data), file_type=ending, process=False, **more)
     except Exception as error:  # whatever a reader of foreign bytes stumbles on
         reason = f"{type(error).__name__}: {error}"[:120]
         raise InputError(

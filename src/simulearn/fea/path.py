@@ -124,6 +124,7 @@ class Path:
         u = near.copy()
         for weight, state in zip(lagrange(last[-2:], s, g), last[-2:], strict=True):
             u += weight * (state.u - self.guide[state.released, state.gravity])
+        u[self.problem.solid.fixed] = 0.0  # whatever a coarser mesh holds
         guess = SolidState(s, g, u, extrapolated(self.last, s, g).carried)
         try:
             state = self.problem.equilibrium(guess, most=GUIDED_ITERATIONS)

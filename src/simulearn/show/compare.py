@@ -13,6 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from simulearn.compare import Comparison
 from simulearn.compare.report import verdict
@@ -97,7 +98,8 @@ def quad_values(comparison: Comparison, surface: Skin) -> Array:
         at = np.array([0, 0.25, 0.5, 0.75, 1])
         good = np.isfinite(rows)
         if good.any():
-            values[mine] = np.interp(t[mine], at[good], rows[good])
+            # Beyond what was measured nothing is known.
+            values[mine] = np.interp(t[mine], at[good], rows[good], left=np.nan, right=np.nan)
     return values
 
 
@@ -134,22 +136,23 @@ def _draw_measured(ax: Axes, comparison: Comparison, camera: Camera, numbers: bo
         x, y = camera.see(some)[:, :2].T
         ax.plot(x, y, ",", color=MEASURED, alpha=0.35, zorder=3)
     here, there = camera.see(off.simulated)[:, :2], camera.see(off.joints)[:, :2]
-    for j in np.flatnonzero(off.measured):
+    for j in np.flatnonzero(off.measured).tolist():
         ax.plot(*np.stack([here[j], there[j]]).T, color=MEASURED, lw=1.0, zorder=5)
     measured = there[off.measured]
     ax.plot(*measured.T, "o", ms=4.5, mfc="none", mec=MEASURED, mew=1.0, zorder=6)
     if numbers:
         for j, (x, y) in enumerate(here):
             ax.annotate(
-                str(j), (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6, zorder=7
-            )
+                str(j), (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6, zorder=7,
+                path_effects=[withStroke(linewidth=1.4, foreground="white")],
+            )  # fmt: skip
 
 
 def _scale(fig: Figure, norm: Normalize, foot: float, height: float) -> None:
     ax = fig.add_axes((0.6, (foot - 0.28) / height, 0.37, 0.07 / height))
     bar = fig.colorbar(ScalarMappable(norm, SHADES), cax=ax, orientation="horizontal")
     bar.ax.tick_params(labelsize=6, length=2, pad=1)
-    bar.outline.set_linewidth(0.4)  # type: ignore[operator]
+    bar.outline.set_linewidth(0.4)
     bar.ax.set_title("deviation, mm (rings: measured)", fontsize=6.5, loc="left", pad=2)
 
 

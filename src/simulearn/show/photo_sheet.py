@@ -72,13 +72,13 @@ def _marker(number: int) -> PathPatch:
     parts = getattr(whole, "geoms", [whole])
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
     path = Path.make_compound_path(*(Path(np.array(ring.coords), closed=True) for ring in rings))
-    return PathPatch(path, fc=BLACK, lw=0)
+    return PathPatch(path, fc=BLACK, lw=0, snap=False)
 
 
 def _frame(ax: Any, dark: bool) -> None:
     """Draw the frame with a tick outwards for each millimetre, and a longer one for each 5, 10."""
     left, low, right, high = FRAME
-    inside = {"fc": DARK_GREY if dark else "none", "ec": INK, "lw": 0.5}
+    inside: dict[str, Any] = {"fc": DARK_GREY if dark else "none", "ec": INK, "lw": 0.5}
     ax.add_patch(Rectangle((left, low), right - left, high - low, **inside))
     lines = []
     for k in range(round(FRAME_SIZE[0]) + 1):
