@@ -21,7 +21,6 @@ NAMES = ("joint", "joints", "number", "no", "nr", "id", "index", "point", "name"
 AXES = ("x", "y", "z")
 UNIT = r"(?:[\[(]\s*|^[xyz][ _-]+)([^\[\]()]+?)\s*[\])]?$"  # as in "x [mm]", "x (mm)", "x_mm"
 MANY = 20_000  # rows beyond which a table is read at once, without a message for each cell
-CODE = "measurement-table"
 
 
 class Columns(NamedTuple):
@@ -47,7 +46,7 @@ def read_table(text: str) -> JointPlaces:
     comma = separator != ","
     head = [row for row in rows_of(text[:10_000], separator) if row.cells][:60]
     if not head:
-        raise InputError("holds no rows", CODE, "measurement")
+        raise InputError("holds no rows", "measurement-table", "measurement")
     named = all(value_in(cell, comma) is None for cell in head[0].cells)
     columns = _named(head[0].cells) if named else _unnamed(head, comma)
     if columns.joint is None and text.count("\n") > MANY:
@@ -55,7 +54,7 @@ def read_table(text: str) -> JointPlaces:
                            columns.unit)  # fmt: skip
     rows = [row for row in rows_of(text, separator) if row.cells][named:]
     if not rows:
-        raise InputError("holds a header and no rows", CODE, "measurement")
+        raise InputError("holds a header and no rows", "measurement-table", "measurement")
     if columns.joint is None:
         places = [[number_in(row, k, comma) for k in columns.places] for row in rows]
         return JointPlaces(np.array(places), None, columns.unit)
@@ -70,13 +69,15 @@ def _of_joints(rows: Sequence[Row], columns: Columns, comma: bool) -> JointPlace
         joint = _joint(row, columns, comma)
         if joint in places or joint in empty:
             where = f"row {row.number}"
-            raise InputError(f"{where}: joint {joint} has a row already", CODE, where)
+            raise InputError(
+                f"{where}: joint {joint} has a row already", "measurement-table", where
+            )
         if not any(k < len(row.cells) and row.cells[k] for k in columns.places):
             empty.append(joint)
             continue
         places[joint] = [number_in(row, k, comma) for k in columns.places]
     if not places:
-        raise InputError("holds no joint with a place", CODE, "measurement")
+        raise InputError("holds no joint with a place", "measurement-table", "measurement")
     messages = []
     if empty:
         text = f"joints without a place in the table are passed over: {', '.join(map(str, empty))}"
@@ -93,7 +94,7 @@ def _joint(row: Row, columns: Columns, comma: bool) -> int:
     if found is None:
         where = f"row {row.number}"
         text = f'{where} names the joint "{cell[:40]}"; a joint is named by its number, from 0'
-        raise InputError(text, CODE, where)
+        raise InputError(text, "measurement-table", where)
     return int(found[1])
 
 
@@ -113,7 +114,7 @@ def _named(header: Sequence[str]) -> Columns:
             f'row 1 is "{", ".join(header)[:60]}", which names no column {missing[0]}; '
             "a table has the columns joint, x, y, z"
         )
-        raise InputError(text, CODE, "row 1")
+        raise InputError(text, "measurement-table", "row 1")
     of = [units[axis] for axis in AXES if axis in units]
     mm = unit_named(of[0], f'"{of[0]}" in the header').mm if of else None
     joint = next((at[name] for name in NAMES if name in at), None)
@@ -131,7 +132,7 @@ def _unnamed(rows: Sequence[Row], comma: bool) -> Columns:
         f"row {rows[0].number} has {width} cells; a row is joint, x, y, z, or x, y, z without "
         "the number of the joint"
     )
-    raise InputError(text, CODE, f"row {rows[0].number}")
+    raise InputError(text, "measurement-table", f"row {rows[0].number}")
 
 
 def _at_once(text: str, columns: Columns, separator: str, skip: int) -> np.ndarray:
@@ -148,9 +149,11 @@ def _at_once(text: str, columns: Columns, separator: str, skip: int) -> np.ndarr
             ndmin=2,
         )
     except ValueError as error:
-        raise InputError(f"a row is not as the others: {error}", CODE, "measurement") from error
+        raise InputError(
+            f"a row is not as the others: {error}", "measurement-table", "measurement"
+        ) from error
     if not np.isfinite(places).all():
         row = int(np.flatnonzero(~np.isfinite(places).all(axis=1))[0])
         text = f"row {row + skip + 1} has a coordinate that is no finite number"
-        raise InputError(text, CODE, f"row {row + skip + 1}")
+        raise InputError(text, "measurement-table", f"row {row + skip + 1}")
     return np.asarray(places)
