@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
+MARGIN = 1.1  # on top: kinds of grids differ by more than chance, and a new one may be the worst
 OUTSIDE = 2.0  # by how much the logarithm grows per width of a training range beyond it
 RIDGE = 1e-3  # keeps weights small that the trials do not determine
 MOST = 3.0  # standard deviations of a sign beyond its mean that still count
@@ -155,6 +156,7 @@ def error_bound_of(
     # As many below as required, counting the next trial to come.
     left = np.log(np.maximum(others[1], 1e-6)) - np.clip(others[0], *limits) @ weights
     weights[0] += np.quantile(left, min(1.0, PART * (len(left) + 1) / len(left)))
+    weights[0] += np.log(MARGIN)
     thick = np.concatenate([_thickness(b) for b in learnt])
     size = np.concatenate([b.dimensions for b in learnt]) / thick
     length = np.concatenate([(beam_lengths(b) / _thickness(b)[:, None]).ravel() for b in learnt])

@@ -138,6 +138,9 @@ def train(
     return model, every
 
 
+ENOUGH = 100  # trials that fit the weights of the error estimate
+
+
 @double_precision
 def calibrated(
     model: Equilibrium,
@@ -150,7 +153,8 @@ def calibrated(
     Args:
         model: without an estimate.
         calibration: trials that count for the coverage, by the mesh whose answers are wanted.
-        aside: further trials that the model did not learn from.
+        aside: further trials that the model did not learn from; where there are enough of them,
+            they alone fit the weights, else every other trial of the calibration does.
         learnt: trials that it learnt from.
     """
     answers = [(batch, _answered(model, batch)) for batch in (*calibration, *aside)]
@@ -159,9 +163,12 @@ def calibrated(
     for batch, (prediction, error, ended) in answers:
         signs = signs_of_error(designs_of(batch), prediction, *seen)
         rows.append((signs[ended], error[ended]))
-    signs, error = (np.concatenate(x) for x in zip(*rows, strict=True))
-    count = [np.concatenate(x) for x in zip(*rows[: len(calibration)], strict=True)]
-    return error_bound_of(signs, error, (count[0], count[1]), seen, learnt)
+    counted, others = rows[: len(calibration)], rows[len(calibration) :]
+    last = [np.concatenate(x) for x in zip(*counted, strict=True)]
+    first = [np.concatenate(x) for x in zip(*others, strict=True)] if others else [last[0][:0]] * 2
+    if len(first[0]) < ENOUGH:  # what counts for the coverage must be no part of the fit
+        first, last = [x[::2] for x in last], [x[1::2] for x in last]
+    return error_bound_of(first[0], first[1], (last[0], last[1]), seen, learnt)
 
 
 def _answered(model: Equilibrium, batch: Batch) -> tuple[Prediction, Any, Any]:
