@@ -133,7 +133,7 @@ def test_prints_of_many_materials_are_those_of_each():
     prints = last_frames(grid, materials)
     assert prints.converged.all()
     alone = last_frames(grid, [materials[3]])
-    np.testing.assert_array_equal(prints.joints[3], alone.joints[0])
+    np.testing.assert_allclose(prints.joints[3], alone.joints[0], atol=1e-6)
     assert np.ptp(prints.centres[:, 1, 2]) > 0.1
 
 
@@ -145,19 +145,20 @@ def test_the_strain_of_one_beam_alone_may_differ():
     assert 0 < moved[1] < moved[2]
 
 
-@pytest.mark.parametrize("curl", [0.01, -0.01])
-def test_a_strip_with_open_ends_has_an_answer_and_curls_of_its_own(curl):
-    light = shrinking(1.0, curl=curl)
-    light = light.model_copy(
-        update={"gravity": light.gravity.model_copy(update={"acceleration": 0.0})}
+def test_a_strip_with_open_ends_has_an_answer_and_curls_of_its_own():
+    none = {"acceleration": 0.0}
+    up, down = (
+        m.model_copy(update={"gravity": m.gravity.model_copy(update=none)})
+        for m in (shrinking(1.0, curl=0.01), shrinking(1.0, curl=-0.01))
     )
-    (end,) = last_frames(bar(50.0, 0.0, light), [light]).centres[:, 1]
-    # An arc of curvature curl / thickness over the beam and half of each joint.
-    rise = 57.2**2 / 2 * curl / 4
-    assert end[2] == pytest.approx(rise, rel=0.15)
+    prints = last_frames(bar(50.0, 0.0, up), [up, down])
+    first, second = prints.centres[:, 1, 2]
+    # An arc of curvature curl / thickness over the beam and half of each joint; the held joint
+    # tilts both alike.
+    assert (first - second) / 2 == pytest.approx(57.2**2 / 2 * 0.01 / 4, rel=0.15)
 
 
-def test_errors_are_told_by_kind_and_by_member():
+def test_errors_are_summed_by_kind_and_by_member():
     count = 12
     members = np.array([member_of(member(k)) for k in range(count)])
     errors = Errors(
