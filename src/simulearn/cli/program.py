@@ -44,6 +44,8 @@ HINTS = {  # what helps on the command line, by the code of an error
     "unit-name": "--unit mm and --unit in are examples",
     "curves-only": "--flatten 0.5 keeps them within 0.5 mm",
     "not-flat": "--without plane reads the lines as seen from above",
+    "photo-markers": "--scale measures without the sheet",
+    "photo-up": "--up inside or --up outside says it",
     "port-taken": "without --port a free one is found",
 }
 

@@ -1,6 +1,6 @@
 """Pictures about learning: loss curves, histograms of errors, answers over the truth.
 
-Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: the truth in grey, a model's answer
+Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: the finite elements in grey, a model's answer
 in orange.
 """
 
@@ -134,7 +134,7 @@ def grids_picture(evaluation: Evaluation, name: str) -> Figure:
             f"{words}: trial {e.numbers[k]}, {e.percent[k, -1]:.2f} % of {e.dimension[k]:.0f} mm",
             fontsize=8,
         )
-    figure.supxlabel(f"truth in grey, {name} in orange", fontsize=7)
+    figure.supxlabel(f"finite elements in grey, {name} in orange", fontsize=7)
     return style.ink(figure)
 
 
@@ -155,7 +155,7 @@ def both(batch: Batch, frames: Frames, t: int) -> tuple[Result, Result]:
 def draw_both(
     ax: Axes, truth: Result, answer: Result, frame: int = -1, camera: Camera = Camera()
 ) -> None:
-    """Draw a frame of two results through each other, the truth in grey, the answer in orange."""
+    """Draw a frame of two results through each other, the finite elements in grey, the answer in orange."""
     faces, depths, colours = [], [], []
     for result, colour in ((truth, TRUTH), (answer, ANSWER)):
         surface = skin(result, SPACING)
