@@ -84,11 +84,11 @@ def linear(report: Report, grids: list[Grid], material: Material) -> None:
     )
     table = []
     for words, of, part in readings:
-        asked = [
+        needed = [
             part * MEASURED / np.sqrt(rms(of_print / of) ** 2 + (r * rms(of_beams / of)) ** 2)
             for r in (0.0, 0.5, 1.0)
         ]
-        table.append([words, *(f"{value:.1f} %" for value in asked)])
+        table.append([words, *(f"{value:.1f} %" for value in needed)])
     report.say(f"So {MEASURED} % asks for this standard deviation of the strains between prints:")
     report.table(
         ["what 4.09 % is taken to be", "beams alike", "beams half as much", "beams as much"], table

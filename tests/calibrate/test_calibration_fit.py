@@ -57,7 +57,7 @@ def test_simulated_strips_give_the_hidden_material():
     got = {one.name: one for one in found.estimates}
     assert got["strain"].value == pytest.approx(0.85, abs=0.04)
     assert got["curl"].value == pytest.approx(0.15, abs=0.02)
-    assert got["joint"].told == "not"
+    assert got["joint"].determined == "not"
     assert got["joint"].value == got["joint"].base
     assert any(m.code == "calibration-untold" for m in found.messages)
 

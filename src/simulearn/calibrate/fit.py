@@ -1,4 +1,4 @@
-"""Fitting a base material to the readings of a plate: values, intervals, and what is not told.
+"""Fitting a base material to the readings of a plate: values, intervals, and what is not determined.
 
 Least squares of all differences over their standard deviations (see `noise`), together with what is
 held likely before: numbers lie about the base's as far as materials of the family differ. So what
@@ -24,8 +24,8 @@ from simulearn.errors import Cancel, InputError, Message
 from simulearn.material import Material
 
 Numbers = NDArray[np.float64]
-HELD = 0.9  # a number whose standard deviation the readings leave above this part is not told
-TOLD = 0.5  # below, it is told well
+HELD = 0.9  # a number whose standard deviation the readings leave above this part is not determined
+CLEAR = 0.5  # below, it is determined well
 COVERED = 0.9  # of an interval
 UNLIKELY = 0.01
 FAR = 3.5  # standard deviations of a strip's difference that is worth a warning
@@ -41,7 +41,7 @@ class Estimate:
         base: of the base material.
         value: of the fitted one.
         low, high: interval of 90 %.
-        told: "well", "partly" or "not": whether the readings tell it.
+        determined: "well", "partly" or "not": whether the readings determine it.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Estimate:
     value: float
     low: float
     high: float
-    told: str
+    determined: str
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ def _result(form: Form, base: Material, search: Search, messages: list[Message])
             float(search.at[k]),
             float(low[k]),
             float(high[k]),
-            "not" if shares[k] >= HELD else "partly" if shares[k] > TOLD else "well",
+            "not" if shares[k] >= HELD else "partly" if shares[k] > CLEAR else "well",
         )
         for k, one in enumerate(search.model.parameters)
     )
@@ -235,7 +235,7 @@ def _edges(search: Search) -> Iterator[Message]:
 
 def _untold(estimates: tuple[Estimate, ...]) -> Iterator[Message]:
     """Yield a note on the numbers that the readings do not tell."""
-    names = [one.name for one in estimates if one.told == "not"]
+    names = [one.name for one in estimates if one.determined == "not"]
     if names:
         text = f"the readings do not tell {', '.join(names)}; the base material's stay"
         yield Message("calibration-untold", "form", text)

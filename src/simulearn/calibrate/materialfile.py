@@ -93,11 +93,11 @@ def base_text(material: str) -> str:
 
 
 def _comment(one: Estimate) -> str:
-    if one.told == "not":
-        return f"not told by the strips, the base's; {one.low:.3f} to {one.high:.3f} is likely"
+    if one.determined == "not":
+        return f"not determined by the strips, the base's; {one.low:.3f} to {one.high:.3f} is likely"
     ratio = "the base's" if one.name in ("strain", "load") else "the active strain"
     return (
-        f"{one.name} {one.value:.3f} ({one.low:.3f} to {one.high:.3f}) of {ratio}, told {one.told}"
+        f"{one.name} {one.value:.3f} ({one.low:.3f} to {one.high:.3f}) of {ratio}, determined {one.determined}"
     )
 
 

@@ -103,10 +103,10 @@ class FormText:
         return text[: begin + cell.start()] + value + text[begin + cell.end() :]
 
     def _by_hand(self, values: Mapping[str, float]) -> InputError:
-        told = " and ".join(f"{key} {value:.2f}" for key, value in values.items())
+        values_text = " and ".join(f"{key} {value:.2f}" for key, value in values.items())
         return InputError(
             f"{self.path}: the values of strip {self.strip} cannot be written into this text, as "
-            f"it has another layout; write {told} as number {self.repeat} by hand",
+            f"it has another layout; write {values_text} as number {self.repeat} by hand",
             "photo-form",
         )
 

@@ -176,11 +176,11 @@ def _numbers(found: "Fit") -> Table:
     table = Table("number", box=None, title="numbers, 90 % intervals", title_justify="left")
     for head in ("base", "fitted", "from", "to"):
         table.add_column(head, justify="right")
-    table.add_column("told")
+    table.add_column("determined")
     table.add_column("what it is")
     for one in found.estimates:
         values = (one.base, one.value, one.low, one.high)
-        table.add_row(one.name, *(f"{value:.3f}" for value in values), one.told, one.words)
+        table.add_row(one.name, *(f"{value:.3f}" for value in values), one.determined, one.words)
     return table
 
 
