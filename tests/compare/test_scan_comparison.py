@@ -3,11 +3,13 @@
 import numpy as np
 import printed
 import pytest
+from scipy.spatial import KDTree
 
 from simulearn.compare import Scan, compare
 from simulearn.compare.aligning import rigid
 from simulearn.compare.clutter import without_table
 from simulearn.compare.deviation import curvature_of
+from simulearn.compare.normals import estimated
 from simulearn.compare.simulated import stations_of
 from simulearn.errors import InputError
 
@@ -55,6 +57,24 @@ def test_a_mirrored_scan_with_its_normals_turned_in():
     off = np.linalg.norm((found.deviation.stations - found.deviation.expected)[:, 1], axis=-1)
     assert (found.deviation.beams[:, 0] > 0).all()
     assert (found.deviation.beams[:, 1] < 2 * off.max() + 3).all()
+
+
+def test_a_cloud_that_is_off_by_more_than_half_a_thickness():
+    far = printed.shape(printed.material(strain=1.4, curl=0.02))
+    found = compared(printed.moved(printed.surface(far)[0], 3))
+    assert found.deviation.mean > 3.0
+    assert found.deviation.measured.all()
+    assert errors(found, far).max() < 0.3
+
+
+def test_the_outside_of_a_cloud_is_known_where_both_faces_are_scanned():
+    points, normals = printed.surface(printed.shape(), noise=0.1)
+    found, sure = estimated(points, KDTree(points))
+    agree = (found * normals).sum(axis=1)
+    assert (agree[sure] > 0).mean() > 0.97
+    assert sure.mean() > 0.8
+    plane = points[:8000] * [1, 1, 0]
+    assert not estimated(plane, KDTree(plane))[1].any()
 
 
 def test_the_table_is_taken_off_and_a_flat_grid_is_none():
