@@ -1,14 +1,20 @@
 """Scans of prints in any pose, with a table, strays and holes: the joints are found again."""
 
+from functools import partial
+
 import numpy as np
 import printed
 import pytest
+from scipy.spatial import KDTree
 
+import synthetic
 from simulearn.compare import Scan, compare
 from simulearn.compare.aligning import rigid
 from simulearn.compare.clutter import without_table
 from simulearn.compare.deviation import curvature_of
-from simulearn.compare.simulated import stations_of
+from simulearn.compare.fitting import fitted
+from simulearn.compare.normals import estimated
+from simulearn.compare.simulated import stations_of, surface_of
 from simulearn.errors import InputError
 
 HIDDEN = printed.shape(printed.material(strain=1.15))
@@ -55,6 +61,31 @@ def test_a_mirrored_scan_with_its_normals_turned_in():
     off = np.linalg.norm((found.deviation.stations - found.deviation.expected)[:, 1], axis=-1)
     assert (found.deviation.beams[:, 0] > 0).all()
     assert (found.deviation.beams[:, 1] < 2 * off.max() + 3).all()
+
+
+def test_a_cloud_that_is_off_by_more_than_a_thickness():
+    design = printed.grid(length=80.0)  # so that a station is 3 mm off where its neighbour has it
+    base, print_ = (
+        synthetic.result(design, partial(synthetic.cylinder, curvature=k), solid=False)
+        for k in (0.012, 0.025)
+    )
+    points, _ = printed.surface(print_, count=25_000)
+    found = fitted(Scan(points), surface_of(base), stations_of(base))
+    off = np.linalg.norm(print_.centres[-1] - base.centres[-1], axis=1)
+    assert off.max() > 30.0
+    assert found.seen.all()
+    error = np.linalg.norm(found.places[:9] - print_.centres[-1], axis=1)
+    assert error.max() < 0.3
+
+
+def test_the_outside_of_a_cloud_is_known_where_both_faces_are_scanned():
+    points, normals = printed.surface(printed.shape(), noise=0.1)
+    found, sure = estimated(points, KDTree(points))
+    agree = (found * normals).sum(axis=1)
+    assert (agree[sure] > 0).mean() > 0.97
+    assert sure.mean() > 0.8
+    plane = points[:8000] * [1, 1, 0]
+    assert not estimated(plane, KDTree(plane))[1].any()
 
 
 def test_the_table_is_taken_off_and_a_flat_grid_is_none():

@@ -12,10 +12,12 @@ import heapq
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import KDTree
 from scipy.spatial.transform import Rotation
 
 from simulearn.compare.measurement import Numbers, Scan
+from simulearn.compare.normals import estimated
 from simulearn.compare.simulated import Stations, Surface
 from simulearn.errors import Cancel, stop_if
 
@@ -112,8 +114,10 @@ class _Fitting:
     def __init__(self, scan: Scan, surface: Surface, stations: Stations) -> None:
         self._points = scan.points
         self._tree = KDTree(scan.points)
-        self._signed = scan.normals is not None
-        self._normals = scan.normals if scan.normals is not None else estimated(scan, self._tree)
+        if scan.normals is None:
+            self._normals, self._sure = estimated(scan.points, self._tree)
+        else:
+            self._normals, self._sure = scan.normals, np.ones(len(scan.points), bool)
         self._surface, self._stations = surface, stations
         flat = KDTree(surface.flat)
         self._patches = [np.array(p) for p in flat.query_ball_point(stations.flat, PATCH)]
@@ -147,7 +151,8 @@ class _Fitting:
             if len(near) < FEWEST:
                 return None
             ours = (self._points[near] - at) @ turn
-            away, index, own = self._nearest(tree, ours, self._normals[near] @ turn)
+            normals_here = self._normals[near] @ turn
+            away, index, own = self._nearest(tree, ours, normals_here, self._sure[near])
             far = FAR[0] + (FAR[1] - FAR[0]) * min(1.0, 2 * step / STEPS)
             off = ((ours - local[index]) * own).sum(axis=1)
             keep = away < far + TURNED
@@ -189,14 +194,15 @@ class _Fitting:
         return near
 
     def _nearest(
-        self, tree: KDTree, points: Numbers, normals: Numbers
+        self, tree: KDTree, points: Numbers, normals: Numbers, sure: NDArray[np.bool_]
     ) -> tuple[Numbers, np.ndarray, Numbers]:
         """Return distances, places on the patch, and the patch's normals there."""
         away, index = tree.query(np.hstack([points, TURNED * normals]))
-        if not self._signed:  # either side of a plane through neighbours may be outside
-            other, second = tree.query(np.hstack([points, -TURNED * normals]))
-            index = np.where(other < away, second, index)
-            away = np.minimum(away, other)
+        if not sure.all():
+            turned = np.hstack([points, -TURNED * normals])[~sure]
+            other, second = tree.query(turned)
+            index[~sure] = np.where(other < away[~sure], second, index[~sure])
+            away[~sure] = np.minimum(away[~sure], other)
         return away, index, np.asarray(tree.data[index, 3:] / TURNED)
 
     def _prior(self, s: int) -> Numbers:
@@ -207,14 +213,3 @@ class _Fitting:
         prior[:3, :3] = hold
         prior[3:, 3:] = np.eye(3) / STIFF[1] ** 2
         return prior
-
-
-def estimated(scan: Scan, tree: KDTree, count: int = 12) -> Numbers:
-    """Return normals (N, 3) of a cloud, of planes through neighbours; either way out."""
-    normals = np.empty_like(scan.points)
-    for first in range(0, len(scan.points), 20_000):
-        part = slice(first, first + 20_000)
-        _, near = tree.query(scan.points[part], k=min(count, len(scan.points)))
-        off = scan.points[near] - scan.points[near].mean(axis=1, keepdims=True)
-        normals[part] = np.linalg.eigh(np.swapaxes(off, 1, 2) @ off)[1][:, :, 0]
-    return normals
