@@ -257,7 +257,7 @@ def test_an_edited_material_changes_the_next_answer(cell, tmp_path):
     (refused,) = engine("learned").simulate([grid])
     assert refused.code == "material-not-learnt"
     assert "strain of the active half is 0.37, learnt 0.05" in refused.message
-    assert named.material.digest[:12] in refused.message
+    assert engine("learned").material.digest[:12] in refused.message
     # A little outside it answers, and says so.
     path.write_text(text.replace("active = 0.09261", "active = 0.14"), "utf-8")
     near = one(engine("learned").simulate([grid])[0])
