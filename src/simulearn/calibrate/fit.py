@@ -1,4 +1,4 @@
-"""Fitting a base material to the readings of a plate: values, intervals, and what is not determined.
+"""Fitting a base material to the readings of a plate: values, intervals, what is undetermined.
 
 Least squares of all differences over their standard deviations (see `noise`), together with what is
 held likely before: numbers lie about the base's as far as materials of the family differ. So what

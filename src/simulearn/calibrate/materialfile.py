@@ -94,10 +94,11 @@ def base_text(material: str) -> str:
 
 def _comment(one: Estimate) -> str:
     if one.determined == "not":
-        return f"not determined by the strips, the base's; {one.low:.3f} to {one.high:.3f} is likely"
+        return f"not determined, the base's; {one.low:.3f} to {one.high:.3f} is likely"
     ratio = "the base's" if one.name in ("strain", "load") else "the active strain"
     return (
-        f"{one.name} {one.value:.3f} ({one.low:.3f} to {one.high:.3f}) of {ratio}, determined {one.determined}"
+        f"{one.name} {one.value:.3f} ({one.low:.3f} to {one.high:.3f}) of {ratio}, "
+        f"determined {one.determined}"
     )
 
 

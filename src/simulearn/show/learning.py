@@ -1,7 +1,7 @@
 """Pictures about learning: loss curves, histograms of errors, answers over the truth.
 
-Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: the finite elements in grey, a model's answer
-in orange.
+Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: finite elements in grey, a model's answer in
+orange.
 """
 
 from collections.abc import Sequence
@@ -155,7 +155,7 @@ def both(batch: Batch, frames: Frames, t: int) -> tuple[Result, Result]:
 def draw_both(
     ax: Axes, truth: Result, answer: Result, frame: int = -1, camera: Camera = Camera()
 ) -> None:
-    """Draw a frame of two results through each other, the finite elements in grey, the answer in orange."""
+    """Draw a frame of two results through each other, finite elements in grey, the answer in orange."""
     faces, depths, colours = [], [], []
     for result, colour in ((truth, TRUTH), (answer, ANSWER)):
         surface = skin(result, SPACING)
