@@ -170,7 +170,7 @@ def robust(report: Report, seconds: float) -> None:
             [
                 name,
                 ratios,
-                f"{error:.2f} mm",
+                "not checked" if error is None else f"{error:.2f} mm",
                 f"{100 * (p.together or 0):.0f} % of {p.drawn}",
                 f"{p.error_mm:.2f} mm, nine of ten below {p.error_90_mm:.2f} mm",
             ]

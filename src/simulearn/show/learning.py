@@ -1,6 +1,6 @@
 """Pictures about learning: loss curves, histograms of errors, answers over the truth.
 
-Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: finite elements in grey, a model's answer in
+Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: finite elements in grey, a model in
 orange.
 """
 
@@ -155,7 +155,7 @@ def both(batch: Batch, frames: Frames, t: int) -> tuple[Result, Result]:
 def draw_both(
     ax: Axes, truth: Result, answer: Result, frame: int = -1, camera: Camera = Camera()
 ) -> None:
-    """Draw a frame of two results through each other, finite elements in grey, the answer in orange."""
+    """Draw a frame of two results through each other: finite elements grey, the answer orange."""
     faces, depths, colours = [], [], []
     for result, colour in ((truth, TRUTH), (answer, ANSWER)):
         surface = skin(result, SPACING)
