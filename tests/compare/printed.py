@@ -6,11 +6,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import synthetic
-from simulearn.material import load_material
+from simulearn.material import Scatter, load_material
 from simulearn.simulate import skin
 from simulearn.simulate.members import Prints
 
-BASE = load_material("pla-hot-water")
+BASE = load_material("pla-hot-water").model_copy(update={"scatter": Scatter()})
 NAMES = ("strain", "passive", "joint", "shell", "curl", "weight", "creep")
 
 

@@ -35,7 +35,7 @@ def test_a_table_of_joints_is_compared_drawn_and_written(run, design, tmp_path):
     assert code == 0, err
     assert "9 of 9 joints measured; mean deviation" in out
     assert "a strain of 1.12 times would explain 100% of the squared deviation" in out
-    assert "published: 4.09% of the diagonal span" in out
+    assert "by the material: 17.0% from print to print" in out
     assert "simulearn calibrate" in out
     data = json.loads(files[1].read_text())
     assert data["schema"] == "simulearn.comparison/1"
