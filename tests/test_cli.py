@@ -696,7 +696,7 @@ def test_a_saddle_by_finite_elements(tmp_path):
     assert json.loads(done.stdout)["engine"] == "fea"
     result = read_npz(path)
     empty = {f.name for f in dataclasses.fields(result) if getattr(result, f.name) is None}
-    assert empty == {"model", "bound_mm"}
+    assert empty == {"model", "bound_mm", "scatter"}
     middle = result.centres[:, result.grid.fixed]
     np.testing.assert_allclose(middle[0], 0, atol=1e-9)
     # The saddle is symmetric under half a turn about its middle.

@@ -231,6 +231,8 @@ def engines(monkeypatch):
 
     for name in ("learned", "fea"):
         monkeypatch.setitem(ENGINES, name, lambda name=name: Engine(name, solver, workers=1))
+    fine = Engine("fea", solver, workers=1)  # by which searches are checked
+    monkeypatch.setattr("simulearn.simulate.engines._fea", lambda mesh: fine)
     simulations._engine.cache_clear()
     yield hold
     hold.most = NEVER
