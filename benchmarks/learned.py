@@ -1,7 +1,7 @@
 """How good the learned models are that come with SimuLearn.
 
 Accuracy is measured on the test trials of the data set that a model has learnt from, and on sets
-of other topologies where they are there; the truth is always the finite elements'. Their speed is
+of other topologies where they are there; the reference is always the finite elements'. Speed is
 measured by `learned_speed.py`.
 
     python benchmarks/learned.py [--data data/default.h5 data/3x3.h5 ...]

@@ -9,22 +9,17 @@ as fine in every direction.
 
 import numpy as np
 
+from mesh_study import LAYOUTS as STUDIED
+from mesh_study import REFERENCE
 from report import Report
-from simulearn.fea import COARSE, FINE, THREE_ACROSS, Layout, Trial, simulate_grid
+from simulearn.fea import Trial, simulate_grid
 from simulearn.fea.bar import bar, curvature
 from simulearn.grid import Grid
 from simulearn.material import Material, load_material
 
 PLA = load_material("pla-hot-water")
 LIGHT = PLA.model_copy(update={"gravity": PLA.gravity.model_copy(update={"density": 1e-15})})
-REFERENCE = Layout(core=2, slabs=16, layers=2)
-LAYOUTS = {
-    "default": COARSE,
-    "16 slabs": Layout(slabs=16),
-    "2 layers a half": Layout(layers=2),
-    "three across": THREE_ACROSS,
-    "fine": FINE,
-}
+LAYOUTS = {name: layout for name, layout in STUDIED.items() if layout != REFERENCE}
 ARMS = np.array([[0, 0], [60, 0], [0, 60], [-60, 0], [0, -60]])
 
 

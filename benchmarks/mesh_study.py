@@ -37,9 +37,9 @@ def main() -> None:
     for k in range(designs):
         grid, _ = draw_valid(Rules(), 11, k)
         trials = {name: simulate_grid(grid, material, layout) for name, layout in LAYOUTS.items()}
-        truth = trials["four across, 16 slabs, 2 layers a half (reference)"].joints
+        reference = trials["four across, 16 slabs, 2 layers a half (reference)"].joints
         for name, trial in trials.items():
-            away = np.linalg.norm(trial.joints - truth, axis=-1).mean(axis=(1, 2))
+            away = np.linalg.norm(trial.joints - reference, axis=-1).mean(axis=(1, 2))
             distances[name].append(list(100 * away[[1, 5, 10, 11]] / grid.dimension))
             seconds[name].append(trial.seconds)
             size[name] = f"{trial.record['bricks']:,} | {trial.record['unknowns']:,}"

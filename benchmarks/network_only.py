@@ -18,6 +18,7 @@ from simulearn.learn.common.model import Designs, Frames
 from simulearn.learn.equilibrium import corrector
 from simulearn.learn.equilibrium.compiled import first_frame
 from simulearn.learn.equilibrium.config import Stage
+from simulearn.learn.equilibrium.examples import StageExamples
 from simulearn.learn.equilibrium.first_order import loss
 from simulearn.learn.equilibrium.parameters import (
     TWIST_FLIP,
@@ -29,7 +30,7 @@ from simulearn.learn.equilibrium.parameters import (
 )
 from simulearn.learn.equilibrium.prediction import plain
 from simulearn.learn.equilibrium.reference import TrialPoses, trial_poses
-from simulearn.learn.equilibrium.stages import Keeper, StageExamples, descend
+from simulearn.learn.equilibrium.stages import Keeper, descend
 from simulearn.material import load_material
 from simulearn.mechanics.corners import local_corners, placed
 from simulearn.mechanics.forces import BeamState

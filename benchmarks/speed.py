@@ -134,11 +134,11 @@ def main() -> None:
     for k in range(designs):
         grid, _ = draw_valid(Rules(), 42, k)
         marlow.append(simulate_grid(grid, own).seconds)
-        truth = simulate_grid(grid, law, REFERENCE).joints[-1]
+        reference = simulate_grid(grid, law, REFERENCE).joints[-1]
         for name, (solver, layout) in RUNS.items():
             trial = solver(grid, law, layout)
             seconds[name].append(trial.seconds)
-            away = np.linalg.norm(trial.joints[-1] - truth, axis=-1).mean()
+            away = np.linalg.norm(trial.joints[-1] - reference, axis=-1).mean()
             errors[name].append(float(100 * away / grid.dimension))
             print(name, seconds[name][-1], errors[name][-1], flush=True)
 

@@ -99,7 +99,7 @@ def main() -> None:
         "plain Newton, extrapolated": Control(mixed=False, iterations=40),
     }
     trials = {name: simulate_grid(saddle, pla, Layout(), control) for name, control in runs.items()}
-    truth = simulate_grid(saddle, pla, Layout(), Control(tolerance=1e-9)).joints
+    reference = simulate_grid(saddle, pla, Layout(), Control(tolerance=1e-9)).joints
     report.say("Iterations of the saddle's eleven frames, and the distance to tight convergence:")
     report.table(
         ["iteration", "a frame", "in all", "halved", "largest error, mm"],
@@ -109,7 +109,7 @@ def main() -> None:
                 " ".join(map(str, t.record["iterations"][1:])),
                 sum(t.record["iterations"]),
                 t.record["halved"],
-                f"{abs(t.joints - truth).max():.1e}",
+                f"{abs(t.joints - reference).max():.1e}",
             )
             for name, t in trials.items()
         ],

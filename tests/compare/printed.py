@@ -59,7 +59,7 @@ def shape(material=BASE, design=None):
     return dataclasses.replace(of, engine="fea")
 
 
-def last_frames(design, materials, factors=None):
+def last_frames(design, materials, factors, model=None):
     """Stand in for `simulearn.simulate.members.last_frames`."""
     found = [shape(material, design) for material in materials]
     joints, beams = (np.stack([getattr(r, k)[-1] for r in found]) for k in ("joints", "beams"))

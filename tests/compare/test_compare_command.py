@@ -7,14 +7,14 @@ import printed
 import pytest
 from PIL import Image
 
-import simulearn.simulate.members as members
+import simulearn.simulate.source as source
 from simulearn.grid import write_grid
 from simulearn.simulate import ENGINES
 
 
 @pytest.fixture
 def design(monkeypatch, tmp_path):
-    monkeypatch.setattr(members, "last_frames", printed.last_frames)
+    monkeypatch.setattr(source, "last_frames", printed.last_frames)
     monkeypatch.setitem(ENGINES, "fea", printed.Simulator)
     path = tmp_path / "own.json"
     write_grid(printed.grid(), path)

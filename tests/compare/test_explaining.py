@@ -1,14 +1,16 @@
 """One change of the material that explains a deviation: hidden ones are found, others are not."""
 
 import threading
+from dataclasses import replace
 
 import numpy as np
 import printed
 import pytest
 
-import simulearn.simulate.members as members
+import simulearn.simulate.source as source
 from simulearn.compare import JointPlaces, compare
 from simulearn.compare.changes import parameters, steps
+from simulearn.compare.explaining import simulated_by
 from simulearn.compare.report import by_chance, verdict
 from simulearn.errors import CancelledError
 from simulearn.material import Family, Scatter, member_of
@@ -22,11 +24,11 @@ def formula(monkeypatch):
     """Let a formula stand in for the simulations; return how many prints each call had."""
     calls = []
 
-    def last_frames(grid, materials, factors=None):
+    def last_frames(grid, materials, factors, model):
         calls.append(len(materials))
         return printed.last_frames(grid, materials, factors)
 
-    monkeypatch.setattr(members, "last_frames", last_frames)
+    monkeypatch.setattr(source, "last_frames", last_frames)
     return calls
 
 
@@ -101,6 +103,22 @@ def test_every_step_is_a_material_and_the_ranges_are_the_familys():
     twice = printed.material(strain=2.0)
     assert member_of(twice).strain == pytest.approx(2 * member_of(base).strain)
     assert member_of(twice)[1:] == pytest.approx(member_of(base)[1:])
+
+
+def test_a_material_that_the_model_has_not_learnt_is_explained_by_finite_elements(monkeypatch):
+    counts = []
+
+    def frames(grid, materials, factors):
+        counts.append(len(materials))
+        return printed.last_frames(grid, materials, factors)
+
+    by_fea = replace(source.BY_FEA, frames=frames)
+    monkeypatch.setattr(source, "BY_FEA", by_fea)
+    far = printed.material(strain=4.0)
+    places, converged = simulated_by(printed.grid())([far, far])
+    assert counts == [2]
+    assert converged.all()
+    assert places.shape[0] == 2
 
 
 def test_the_scatter_of_the_material_goes_before_the_published_one():

@@ -12,12 +12,14 @@ from simulearn.fea.bar import bar
 from simulearn.grid import make
 from simulearn.learn.common.bundle import bundle_of
 from simulearn.learn.common.metrics import Errors
+from simulearn.learn.common.trials import fingerprint
 from simulearn.learn.equilibrium import corrector
+from simulearn.learn.equilibrium.examples import first_shapes
 from simulearn.learn.equilibrium.first_order import first_order_errors, loss
 from simulearn.learn.equilibrium.learnt import Learnt, learnt_of
 from simulearn.learn.equilibrium.parameters import Parameters
 from simulearn.learn.equilibrium.reference import bucket_of, buckets, filled, trial_poses
-from simulearn.learn.equilibrium.stages import first_shapes
+from simulearn.learn.paper.train import train as train_paper
 from simulearn.material import Family, draw_member, load_material, member_of
 from simulearn.mechanics.model import section_of, unfitted
 from simulearn.mechanics.properties import properties_of, stacked
@@ -111,6 +113,20 @@ def test_what_was_learnt_says_how_far_a_material_is_beyond():
     np.testing.assert_array_equal(again.ranges, learnt.ranges)
     with pytest.raises(InputError, match=r"learnt\.ranges"):
         Learnt.from_arrays({})
+
+
+def test_the_paper_model_refuses_trials_of_several_materials(small, sample):
+    (batch,) = sample.batches
+    materials = (PLA, *[shrinking(1.1)] * (len(batch) - 1))
+    mixed = replace(sample, batches=[replace(batch, materials=materials)])
+    with pytest.raises(InputError, match="of several materials"):
+        train_paper(small, mixed)
+
+
+def test_a_run_is_another_one_with_other_trials_by_the_fine_mesh(small, sample):
+    other = replace(sample, sha256="other")
+    prints = {fingerprint(small, *sets) for sets in ([sample], [sample, sample], [sample, other])}
+    assert len(prints) == 3
 
 
 def test_a_model_of_one_material_knows_no_other():

@@ -16,6 +16,7 @@ from simulearn.learn.common.bundle import bundle_of
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium import corrector, native
 from simulearn.learn.equilibrium.kernels.network import outputs
+from simulearn.learn.equilibrium.printed import prints_of
 from simulearn.material import Family, draw_member, load_material
 from simulearn.mechanics.forces import BeamState
 from simulearn.mechanics.model import REFERENCE_WIDTH
@@ -49,7 +50,7 @@ def test_networks_are_those_of_the_reference(model, rules):
     designs = replace(designs, material=member(3))
     corners = tuple(x[0] for x in corner_topology(designs.beams, designs.flat))
     networks = native.networks_of(model.parameters)
-    (printed,) = native.prints_of(model.parameters.law, designs, 1.0)
+    (printed,) = prints_of(model.parameters.law, designs, 1.0)
     p = printed.properties
     scale = p.width / REFERENCE_WIDTH
     grid = grid_of(

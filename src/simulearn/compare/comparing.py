@@ -137,7 +137,7 @@ def compare(
         else []
     )
     stop_if(cancel)
-    scatter = scatter_of(result.grid, material)
+    scatter = scatter_of(result.grid, material, cancel)
     progress(STAGES, STAGES)
     return Comparison(
         result, material, deviation, tuple(found_causes), scatter, residual, noise, scanned,

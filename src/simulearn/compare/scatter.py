@@ -6,11 +6,13 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 from simulearn.compare.deviation import brought
+from simulearn.errors import Cancel
 from simulearn.grid import Grid
 from simulearn.material import Material
+from simulearn.simulate.scatter import draw_prints, prints_source, simulate_prints
 
 PUBLISHED = 0.0409  # of the diagonal span (Yang et al., SimuLearn, UIST 2020)
-DRAWS = 8
+DRAWS = 8  # prints
 
 
 @dataclass(frozen=True)
@@ -26,20 +28,18 @@ class Scatter:
     words: str
 
 
-def scatter_of(grid: Grid, material: Material) -> Scatter:
-    """Return the scatter by the material where it says one, else the published one."""
+def scatter_of(grid: Grid, material: Material, cancel: Cancel | None = None) -> Scatter:
+    """Return the scatter by the material where it says one, else the published one.
+
+    Raises:
+        CancelledError: the token was set.
+    """
     of = material.scatter
     if not (of.print or of.beam):
         span = float(pdist(grid.joints).max())
         return Scatter(PUBLISHED * span, f"published: {PUBLISHED:.2%} of the diagonal span")
-    from simulearn.simulate.members import last_frames
-
-    rng = np.random.default_rng(0)
-    whole, each = rng.normal(size=(DRAWS, 1)), rng.normal(size=(DRAWS, len(grid.beams)))
-    factors = np.maximum(1 + of.print * whole + of.beam * each, 0.05)
-    prints = last_frames(
-        grid, [material] * (DRAWS + 1), np.vstack([np.ones(len(grid.beams)), factors])
-    )
+    draw = draw_prints(material, len(grid.beams), DRAWS).with_nominal(material)
+    prints = simulate_prints(grid, draw, prints_source(material), cancel=cancel)
     shapes = prints.centres[prints.converged]
     if len(shapes) < 3 or not prints.converged[0]:
         return Scatter(float("nan"), "not known: too few prints of this scatter have an answer")

@@ -57,21 +57,8 @@ SECTION_SHAPES = SectionModel(
 TERMS = 2 + DEVIATIONS  # one, the deviations, and the square of the own curl
 
 
-class SectionLaw(NamedTuple):
+class SectionLaw(SectionModel):
     """Fitted coefficients of each property of a section, (TERMS, ...) each: see `section_of`."""
-
-    active: Any
-    passive: Any
-    curvature: Any
-    short: Any
-    tilt: Any
-    plane: Any
-    thickness: Any
-    waist: Any
-    stiffness: Any
-    stiffened: Any
-    own: Any
-    lean: Any
 
 
 def unfitted() -> SectionLaw:

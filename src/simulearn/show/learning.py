@@ -1,4 +1,4 @@
-"""Pictures about learning: loss curves, histograms of errors, answers over the truth.
+"""Pictures about learning: loss curves, histograms of errors, answers over the reference.
 
 Figures 8 to 11 and 20 of Yang et al., SimuLearn, UIST 2020: finite elements in grey, a model in
 orange.
@@ -24,7 +24,7 @@ from simulearn.show import style
 from simulearn.show.camera import Camera
 from simulearn.simulate import Result, skin
 
-TRUTH, ANSWER = "#8c8c8c", "#e8862e"
+REFERENCE, ANSWER = "#8c8c8c", "#e8862e"
 PAPER = {"mean": 3.03, "97 %": 4.13}  # % of dimension, the paper's test trials
 PARTS = {"release": "release", "creep": "creep", "stress": "stress", "dislocation": "dislocation"}
 SPACING = 3.0  # mm, length of the quadrilaterals along a beam
@@ -122,7 +122,7 @@ def error_picture(evaluation: Evaluation, name: str) -> Figure:
 
 
 def grids_picture(evaluation: Evaluation, name: str) -> Figure:
-    """Return the best, the median and the worst answer over the truth (Figures 11 and 20)."""
+    """Return the best, the median and the worst answer over the reference (Figures 11 and 20)."""
     chosen = (("best", 0.0), ("median", 0.5), ("worst", 1.0))
     figure = Figure(figsize=(7.4, 2.9), dpi=style.DPI, layout="constrained")
     for ax, (words, quantile) in zip(figure.subplots(1, 3), chosen, strict=True):
@@ -139,7 +139,7 @@ def grids_picture(evaluation: Evaluation, name: str) -> Figure:
 
 
 def both(batch: Batch, frames: Frames, t: int) -> tuple[Result, Result]:
-    """Return truth and answer of a trial of a batch."""
+    """Return reference and answer of a trial of a batch."""
     grid = batch.grid(t)
 
     def result(joints: NDArray[Any], sections: NDArray[Any]) -> Result:
@@ -153,11 +153,11 @@ def both(batch: Batch, frames: Frames, t: int) -> tuple[Result, Result]:
 
 
 def draw_both(
-    ax: Axes, truth: Result, answer: Result, frame: int = -1, camera: Camera = Camera()
+    ax: Axes, reference: Result, answer: Result, frame: int = -1, camera: Camera = Camera()
 ) -> None:
     """Draw a frame of two results through each other: finite elements grey, the answer orange."""
     faces, depths, colours = [], [], []
-    for result, colour in ((truth, TRUTH), (answer, ANSWER)):
+    for result, colour in ((reference, REFERENCE), (answer, ANSWER)):
         surface = skin(result, SPACING)
         corners = surface.vertices[frame][surface.quads]
         normals = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
@@ -226,7 +226,7 @@ def _marginal(ax: Axes, runs: Sequence[dict[str, Any]], key: str, words: str) ->
     other = ax.twinx()
     for axes, column, colour, mark, label, aside in (
         (ax, "validation_percent", ANSWER, "o", "vertex error, % of dimension", -0.08),
-        (other, "gap_mm", TRUTH, "s", "dislocation, mm", 0.08),
+        (other, "gap_mm", REFERENCE, "s", "dislocation, mm", 0.08),
     ):
         values = np.array([run[column] for run in runs])
         best = [values[x == k].min() for k in range(len(levels))]

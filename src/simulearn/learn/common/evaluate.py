@@ -1,4 +1,4 @@
-"""Evaluating a model on a data set, by the paper's protocol; the truth is always the set's."""
+"""Evaluating a model on a data set, by the paper's protocol; the reference is always the set's."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

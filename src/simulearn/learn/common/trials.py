@@ -43,7 +43,12 @@ def validate(model: Model, batches: Sequence[Batch]) -> float:
     return float(together(parts).percent[:, -1].mean())
 
 
-def fingerprint(config: RunConfig, data: Dataset) -> str:
-    """Return what a run must share with a checkpoint to go on with it."""
-    shared = config.model_dump(mode="json") | {"data": data.sha256}
+def fingerprint(config: RunConfig, *data: Dataset) -> str:
+    """Return what a run must share with a checkpoint to go on with it.
+
+    Args:
+        config: of the run.
+        data: all sets that it learns from.
+    """
+    shared = config.model_dump(mode="json") | {"data": [one.sha256 for one in data]}
     return hashlib.sha256(json.dumps(shared, sort_keys=True).encode()).hexdigest()

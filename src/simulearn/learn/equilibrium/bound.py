@@ -21,7 +21,6 @@ from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium.learnt import Learnt
 from simulearn.learn.equilibrium.parameters import Prediction
-from simulearn.material import member_of
 from simulearn.mechanics.properties import properties_of, signs_of, stacked
 
 if TYPE_CHECKING:  # answering needs none of it
@@ -97,18 +96,16 @@ def signs_of_error(
     unlike = np.log(1e-2 + far.mean(axis=(1, 2)))
     most = np.log(1e-2 + far.mean(axis=2).max(axis=1))
     materials = designs.materials or (designs.material,)
-    material = np.abs(signs_of(stacked([properties_of(m) for m in materials]), np).T)
-    material = np.broadcast_to(np.delete(material, MESH, axis=1), (len(designs), len(KEPT)))
-    strain = np.broadcast_to([member_of(m).strain for m in materials], len(designs))
+    p = stacked([properties_of(m) for m in materials])
+    of_material = np.delete(np.abs(signs_of(p, np)), MESH, axis=0)
     rows = [
         np.ones_like(size), apart, apart**2, _log(prediction.strain), _log(prediction.sag), size,
-        count, unlike, most, np.abs(strain / 0.0926 - 1),
+        count, unlike, most, np.abs(p.strain - 1), *of_material,
     ]  # fmt: skip
-    return np.concatenate([np.stack(rows, axis=1), material], axis=1)
+    return np.stack([np.broadcast_to(row, size.shape) for row in rows], axis=1)
 
 
 MESH = 5  # which of a material's signs is the mesh
-KEPT = (0, 1, 2, 3, 4, 6, 7)  # the others
 
 
 def _log(x: Any) -> Numbers:

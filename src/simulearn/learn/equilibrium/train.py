@@ -30,6 +30,7 @@ from simulearn.learn.equilibrium.bound import (
     signs_of_error,
 )
 from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
+from simulearn.learn.equilibrium.examples import examples_of
 from simulearn.learn.equilibrium.learnt import learnt_of
 from simulearn.learn.equilibrium.model import Equilibrium
 from simulearn.learn.equilibrium.parameters import (
@@ -43,7 +44,6 @@ from simulearn.learn.equilibrium.stages import (
     Keeper,
     Report,
     StageRow,
-    examples_of,
     fit_law,
     fit_network,
     fit_stress,
@@ -73,15 +73,16 @@ def train(
         ComputationError: a loss is not finite.
     """
     batches, aside = split(config, data)
-    fine: list[Batch] = []
+    sets, fine = [data], list[Batch]()
     if config.fine is not None:
-        fine = [b.take(~b.test) for b in read_dataset(config.fine).batches if (~b.test).any()]
+        sets.append(read_dataset(config.fine))
+        fine = [b.take(~b.test) for b in sets[-1].batches if (~b.test).any()]
     calibration: list[Batch] | None = None
     if config.calibration is not None:  # what is wrong with it is said before all the work
         read = read_dataset(config.calibration, stress=False).batches
         calibration = [b.take(~b.test) for b in read if (~b.test).any()]
     material = batches[0].material
-    identity = fingerprint(config, data)
+    identity = fingerprint(config, *sets)
     stages = (config.law, config.network, config.polish, config.stress)
     total = sum(stage.updates for stage in stages if stage is not None)
     every: list[StageRow] = []

@@ -1,4 +1,4 @@
-"""What training makes small: the distance to the truth, and the dislocation of joints and beams.
+"""What training makes small: the distance to the trials, and the dislocation of joints and beams.
 
 Both are squared, in units of the root mean square of an increment, and counted from the states
 after k steps that begin at true frames, disturbed by noise in proportion to what has happened so

@@ -91,9 +91,15 @@ def train(
         progress: called after every update and every epoch.
 
     Raises:
-        InputError: the checkpoint is of another run, or there are too few trials.
+        InputError: the checkpoint is of another run, or the trials are too few or of several
+            materials.
         ComputationError: the loss is not finite.
     """
+    if len({material.physics for batch in data.batches for material in batch.materials}) > 1:
+        raise InputError(
+            f"{data.config.name}: its trials are of several materials; a model of the kind paper "
+            "learns one, and those of the kind equilibrium a family"
+        )
     batches, watched = split(config, data)
     if config.orientation == "aligned":
         batches = [aligned_batch(batch) for batch in batches]
