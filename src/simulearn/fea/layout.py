@@ -60,7 +60,7 @@ class Layout:
 
 
 COARSE = Layout()  # 210 bricks in a 2x2 grid
-FINE = Layout(core=1, slabs=16)  # 1,314: a tenth of a per cent from what finer ones converge to
+FINE = Layout(core=1, slabs=16)  # 1,314; how far it is from finer ones: docs/verification.md
 THREE_ACROSS = Layout(core=1)  # shell, core, shell: one growth per brick, as CalculiX needs it
 MESHES = {"default": COARSE, "fine": FINE}  # those that have a name
 
