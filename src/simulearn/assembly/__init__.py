@@ -1,0 +1,1 @@
+"""Several grids put together: where each is, in which order they morph, what touches."""

@@ -1,0 +1,1 @@
+"""Surfaces and curves that designers bring: reading, mending, closest points."""

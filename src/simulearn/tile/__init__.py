@@ -1,0 +1,1 @@
+"""Covering a surface with modules: patches, tasks that share borders, what is alike."""
