@@ -239,8 +239,7 @@ class Search:
         most = done + max(1, round(share * (limits.iterations - done)))
         # Targets may have moved since it was scored.
         error = float(problem.error(start.points[None])[0])
-        collides = problem.looked_at(start.x, start.a)
-        start = problem.best = Scored(start.x, start.a, start.points, error, collides)
+        start = problem.best = replace(start, error=error)
         if start.error > GOOD and done < limits.iterations:
             return self.descended(problem, self.method, start, most, phase)
         return start
