@@ -15,8 +15,8 @@ The folder keeps what is done; the same command goes on.
 import argparse
 import json
 import time
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -29,14 +29,15 @@ from skfem import ElementHexS2
 from report import Report
 from simulearn.collisions import Collision, find_all
 from simulearn.dataset import read_config
-from simulearn.grid import Grid, draw_kind
+from simulearn.grid import Grid, Rules, draw_kind, draw_valid
 from simulearn.material import load_material
 from simulearn.simulate import Result, engine, read_npz, write_npz
 from simulearn.simulate.colliding import with_collisions
 from simulearn.simulate.learned import Learned, designs_of
 
 Array = NDArray[np.float64]
-Pairs = dict[tuple[str, str], float]  # parts -> depth, mm
+Pair = tuple[str, str]  # names of two parts
+Confirm = Callable[[Collision], bool]
 
 SEED = 4100
 SPACING = 0.6  # mm between samples
@@ -169,53 +170,67 @@ def _faces(bricks: NDArray[np.int64], nodes: Array) -> Iterator[tuple[Array, ...
         yield (np.repeat(bricks[k][None], count, 0), shape, a, b, np.full(count, np.sign(out)))
 
 
-def measured(result: Result) -> dict[str, float]:
-    """Return how deep pairs of parts ever run into each other, by the solid's surfaces."""
-    solid = result.solid
-    assert solid is not None
-    assert result.displacements is not None
-    parts = surfaces(result)
-    joined = {
-        (a, b): set(parts[a].near) & set(parts[b].near) for a, b in combinations(sorted(parts), 2)
-    }
-    joined = {pair: same for pair, same in joined.items() if not _apart(result, pair)}
-    deepest: dict[str, float] = {}
-    shares = np.arange(STEPS) / STEPS
-    moments = [(f, s) for f in range(len(result.joints) - 1) for s in shares]
-    for f, share in [*moments, (len(result.joints) - 1, 0.0)]:
-        after = result.displacements[min(f + 1, len(result.joints) - 1)]
-        before = result.displacements[f]
-        places = solid.nodes + before + share * (after - before)
-        now = {name: part.at(places) for name, part in parts.items()}
+class Reference:
+    """How deep parts of a solid are in each other.
+
+    Args:
+        result: with its solid.
+    """
+
+    def __init__(self, result: Result) -> None:
+        assert result.solid is not None
+        assert result.displacements is not None
+        self.nodes, self.moved = result.solid.nodes, result.displacements
+        self.parts = surfaces(result)
+        self.pairs = [
+            pair for pair in combinations(sorted(self.parts), 2) if not _apart(result, pair)
+        ]
+
+    def depths(self, frame: int, share: float, pairs: Iterable[Pair]) -> dict[Pair, float]:
+        """Return the depths of pairs that are in each other at a moment, mm."""
+        before, after = self.moved[frame], self.moved[min(frame + 1, len(self.moved) - 1)]
+        places = self.nodes + before + share * (after - before)
+        now = {name: part.at(places) for name, part in self.parts.items()}
         box = {name: (x.min(axis=0), x.max(axis=0)) for name, (x, _) in now.items()}
         trees: dict[str, Any] = {}
-        for (a, b), same in joined.items():
+        found: dict[Pair, float] = {}
+        for a, b in pairs:
             low = np.maximum(box[a][0], box[b][0])
             high = np.minimum(box[a][1], box[b][1])
             if (low >= high).any():
                 continue
-            joint = next(iter(same)) if same and _share(result, a, b, same) else -1
+            both = set(self.parts[a].near) & set(self.parts[b].near)
             for one, other in ((a, b), (b, a)):
                 x, n = now[other]
                 inside = ((now[one][0] > low) & (now[one][0] < high)).all(axis=1)
-                if other not in trees:
-                    trees[other] = cKDTree(x)
                 points = now[one][0][inside]
                 if not len(points):
                     continue
+                if other not in trees:
+                    trees[other] = cKDTree(x)
                 _, k = trees[other].query(points, k=NEAREST)
                 deep = -np.einsum("pkx,pkx->pk", points[:, None] - x[k], n[k]).max(axis=1)
-                if joint >= 0:
-                    near = parts[one].near[joint][inside] & parts[other].near[joint][k[:, 0]]
-                    deep[near] = 0.0
-                key = f"{a}, {b}"
-                deepest[key] = max(deepest.get(key, 0.0), float(deep.max()))
-    return {key: deep for key, deep in deepest.items() if deep > 0}
+                for joint in both:
+                    near = self.parts[one].near[joint][inside]
+                    deep[near & self.parts[other].near[joint][k[:, 0]]] = 0.0
+                if deep.max() > 0:
+                    found[a, b] = max(found.get((a, b), 0.0), float(deep.max()))
+        return found
 
+    def deepest(self) -> dict[Pair, float]:
+        """Return how deep pairs are ever in each other, mm."""
+        last = len(self.moved) - 1
+        moments = [(f, s / STEPS) for f in range(last) for s in range(STEPS)]
+        deepest: dict[Pair, float] = {}
+        for f, share in [*moments, (last, 0.0)]:
+            for pair, deep in self.depths(f, share, self.pairs).items():
+                deepest[pair] = max(deepest.get(pair, 0.0), deep)
+        return deepest
 
-def _share(result: Result, a: str, b: str, same: set[int]) -> bool:
-    """Return whether two parts are joined: numbers of a joint and a beam's joints may agree."""
-    return bool(same) and ("beam" in a or "beam" in b)
+    def confirms(self, one: Collision) -> bool:
+        """Return whether a collision is there at its moment."""
+        a, b = sorted(one.parts)
+        return bool(self.depths(one.frame, one.share, [(a, b)]))
 
 
 def _apart(result: Result, pair: tuple[str, str]) -> bool:
@@ -230,12 +245,7 @@ def _apart(result: Result, pair: tuple[str, str]) -> bool:
     return bool((a > d).any() or (c > b).any())
 
 
-def reported(collisions: tuple[Collision, ...]) -> dict[str, float]:
-    """Return the depths of collisions by their parts."""
-    return {", ".join(sorted(one.parts)): one.depth_mm for one in collisions}
-
-
-def answered(numbers: list[int], folder: Path) -> Iterator[tuple[Result, dict[str, float]]]:
+def answered(numbers: list[int], folder: Path) -> Iterator[tuple[int, Result, dict[Pair, float]]]:
     """Yield the result of each design by finite elements, and what its surfaces say."""
     fine = engine("fea", mesh="fine")
     for k in numbers:
@@ -250,24 +260,64 @@ def answered(numbers: list[int], folder: Path) -> Iterator[tuple[Result, dict[st
                 continue
             write_npz(outcome, path)
         result = read_npz(path)
+        named = replace(result.grid, material=design(k).material)
+        result = replace(result, grid=named)  # files name the material alone
         said = path.with_suffix(".json")
         if not said.exists():
-            said.write_text(json.dumps(measured(result)))
-        print(k, "measured", flush=True)
-        yield result, json.loads(said.read_text())
+            rows = [[*pair, deep] for pair, deep in Reference(result).deepest().items()]
+            said.write_text(json.dumps(rows))
+            print(k, len(rows), flush=True)
+        yield k, result, {(a, b): deep for a, b, deep in json.loads(said.read_text())}
 
 
-def compared(pairs: dict[str, float], said: dict[str, float]) -> tuple[int, list[float], int]:
-    """Return right, missed (their depths) and false reports of a design."""
-    missed = [deep for key, deep in pairs.items() if key not in said]
-    right = sum(key in pairs for key in said)
-    return right, missed, len(said) - right
+@dataclass
+class Tally:
+    """What came of the reports by one kind of sections.
+
+    Attributes:
+        right: pairs that are in each other.
+        false: pairs that are not, with their depths.
+        missed: depths of pairs that were not reported.
+        off: differences of depths that are less than 1.5 mm: deeper ones are measured otherwise.
+        designs: with a false report.
+    """
+
+    right: int = 0
+    false: list[float] = field(default_factory=list)
+    missed: list[float] = field(default_factory=list)
+    off: list[float] = field(default_factory=list)
+    designs: int = 0
+
+    def add(
+        self, collisions: Sequence[Collision], pairs: dict[Pair, float], confirms: Confirm
+    ) -> str:
+        """Add the reports of a design; return what is wrong with them."""
+        said = {tuple(sorted(one.parts)): one for one in collisions}
+        new = [one for pair, one in said.items() if pair not in pairs and not confirms(one)]
+        missed = {pair: deep for pair, deep in pairs.items() if pair not in said}
+        self.right += len(said) - len(new)
+        self.false += [one.depth_mm for one in new]
+        self.designs += bool(new)
+        self.missed += missed.values()
+        self.off += [
+            abs(said[pair].depth_mm - deep)  # type: ignore[index]
+            for pair, deep in pairs.items()
+            if pair in said and deep < 1.5
+        ]
+        wrong = [f"false {one.parts} {one.frame}+{one.share:.2f} {one.depth_mm:.2f}" for one in new]
+        wrong += [f"missed {pair} {deep:.2f}" for pair, deep in missed.items() if deep > MISS]
+        return "; ".join(wrong)
+
+    @property
+    def row(self) -> tuple[object, ...]:
+        """Right, false, designs with false ones, missed, the deepest missed, differences."""
+        missed, off = np.array(self.missed or [0.0]), self.off or [0.0]
+        return (self.right, len(self.false), self.designs, int((missed > MISS).sum()),
+                f"{missed.max():.2f}", f"{np.median(off):.2f}")  # fmt: skip
 
 
 def cost(count: int = 60) -> list[tuple[str, str, str, str]]:
     """Return rows of the time that collisions take beside that of a warm rollout."""
-    from simulearn.grid import Rules, draw_valid
-
     learned = engine("learned")
     assert isinstance(learned, Learned)
     grids = [draw_valid(Rules(), 77, k)[0].centred for k in range(count)]
@@ -297,68 +347,34 @@ def main() -> None:
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
     learned = engine("learned")
-    # By whose sections; then designs that touch, pairs, right, false, missed deeper than .3 mm.
-    names = ("fea, fine mesh", "the same, three sections of each beam", "learned")
-    sums = {name: {"right": 0, "false": 0, "missed": [], "off": []} for name in names}
-    designs = touching = pairs_all = deep_pairs = 0
-    for result, pairs in answered(picked(given.designs, given.folder), given.folder):
-        designs += 1
-        touching += any(deep > MISS for deep in pairs.values())
-        pairs_all += len(pairs)
-        deep_pairs += sum(deep > MISS for deep in pairs.values())
+    names = ("fea, the solid", "fea, three sections of each beam", "learned")
+    tallies = [Tally() for _ in names]
+    every: list[dict[Pair, float]] = []
+    for k, result, pairs in answered(picked(given.designs, given.folder), given.folder):
+        every.append(pairs)
         bare = replace(result, collisions=(), warnings=())
+        solid, three = with_collisions(bare), with_collisions(replace(bare, solid=None))
         (other,) = learned.simulate([result.grid])
-        for name, one in zip(
-            names,
-            (with_collisions(bare), with_collisions(replace(bare, solid=None)), other),
-            strict=True,
-        ):
-            if not isinstance(one, Result):
-                continue
-            said = reported(one.collisions)
-            right, missed, false = compared(pairs, said)
-            row: dict[str, Any] = sums[name]
-            row["right"] += right
-            row["false"] += false
-            row["missed"] += missed
-            shallow = [(said[k], pairs[k]) for k in said if k in pairs and pairs[k] < 1.5]
-            row["off"] += [abs(a - b) for a, b in shallow]
-            if name == names[0] and (false or any(deep > MISS for deep in missed)):
-                print(
-                    "false",
-                    {k: v for k, v in said.items() if k not in pairs},
-                    "missed",
-                    {k: v for k, v in pairs.items() if k not in said},
-                    flush=True,
-                )
+        reference = Reference(result) if solid.collisions or three.collisions else None
+        confirms: Confirm = (lambda one: False) if reference is None else reference.confirms
+        for name, tally, outcome in zip(names, tallies, (solid, three, other), strict=True):
+            if isinstance(outcome, Result):
+                wrong = tally.add(outcome.collisions, pairs, confirms)
+                if wrong and tally is not tallies[-1]:
+                    print(k, f"{name}: {wrong}", flush=True)
+    deep = [sum(depth > MISS for depth in pairs.values()) for pairs in every]
     report = Report("collisions", "Collisions")
     report.say(
-        f"{designs} random designs of several kinds and materials; in {touching} of them parts run "
-        f"into each other by more than {MISS} mm, by the sampled surfaces of the fine solid mesh, "
-        f"in all frames and between them: {pairs_all} pairs of parts, {deep_pairs} of these deeper "
-        f"than {MISS} mm."
+        f"{len(every)} random designs of several kinds and materials. By the sampled surfaces of "
+        f"the fine solid mesh, in all frames and at two moments between each two, parts run into "
+        f"each other by more than {MISS} mm in {sum(map(bool, deep))} of them: {sum(deep)} pairs "
+        f"of parts, and {sum(map(len, every)) - sum(deep)} pairs that do by less."
     )
     report.table(
-        [
-            "collisions of",
-            "right",
-            "false",
-            f"missed, deeper than {MISS} mm",
-            "deepest missed, mm",
-            "median difference of shallow depths, mm",
-        ],
-        [
-            (
-                name,
-                row["right"],
-                row["false"],
-                sum(deep > MISS for deep in row["missed"]),
-                f"{max(row['missed'], default=0.0):.2f}",
-                f"{np.median(row['off'] or [0.0]):.2f}",
-            )
-            for name, row in ((name, dict[str, Any](sums[name])) for name in names)
-        ],
-    )
+        ["sections of the beams", "right", "false", "designs with a false one",
+         f"missed, deeper than {MISS} mm", "deepest missed, mm", "median difference, mm"],
+        [(name, *tally.row) for name, tally in zip(names, tallies, strict=True)],
+    )  # fmt: skip
     report.say("Time beside that of a warm rollout of 2x2 designs, side by side, the median:")
     report.table(["designs at once", "rollout, ms a design", "collisions, ms", "ratio"], cost())
     report.save()

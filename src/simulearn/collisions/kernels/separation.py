@@ -4,7 +4,7 @@ Two convex bodies are apart where their shadows are on some line; for polyhedra 
 normals of faces and cross products of edges (the separating axis theorem: Gottschalk, Lin, Manocha,
 OBBTree, SIGGRAPH 1996). Where they are not, the shortest move that would separate them is along one
 of these lines: that is the depth. The cuts between the pieces of a beam are no faces of it, so that
-a move along a beam is not counted.
+a move along a beam is not counted, but beyond its ends.
 """
 
 from math import sqrt
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from simulearn.collisions.kernels.vectors import cross
+from simulearn.collisions.kernels.vectors import cross, dot
 from simulearn.native import native
 
 Array = Any
@@ -66,4 +66,28 @@ def separation(pieces: Any, a: int, i: int, b: int, j: int) -> float:
         apart = max(apart, value)
         if value > depth and not (is_along(m, e, x, y, z) or is_along(n, f, x, y, z)):
             depth = value
-    return apart if apart > 0.0 else depth
+    if apart > 0.0:
+        return apart
+    return max(depth, beyond_end(pieces, a, i, q), beyond_end(pieces, b, j, p))
+
+
+@native(entry=False)
+def beyond_end(pieces: Any, body: int, k: int, corners: Array) -> float:
+    """Return how far corners (8, 3) are beyond the end of a beam that piece k is at.
+
+    Negative: how far they reach past it; minus infinity where the piece is at no end of a beam.
+    """
+    last = pieces.counts[body] - 1
+    if pieces.kinds[body] != 3 or 0 < k < last:
+        return -np.inf
+    value, own, out = -np.inf, pieces.corners[body, k], pieces.normals[body, k, 2]
+    for side in range(2):
+        if k != side * last:
+            continue
+        sign = 2.0 * side - 1.0
+        end, low = -np.inf, np.inf
+        for c in range(8):
+            end = max(end, sign * dot(out, own[c]))
+            low = min(low, sign * dot(out, corners[c]))
+        value = max(value, low - end)
+    return value
