@@ -131,14 +131,15 @@ def put_together(centre: Result, narrow: Result) -> tuple[tuple[Part, ...], dict
 def slits(
     results: list[tuple[Result, Place]], panel: Place, frames: slice
 ) -> list[tuple[float, float, float, float]]:
-    """Return the slits (x, x, y, y) mm that a panel needs for the pieces in some frames."""
+    """Return the slits (x, x, y, y), whole mm, that a panel needs for the pieces in some frames."""
     found = []
     for result, place in results:
         corners = [result.joints[frames].reshape(-1, 3), result.beams[frames].reshape(-1, 3)]
         x, y, z = panel.back(place(np.concatenate(corners))).T
         inside = z > -STAND - PLAY
-        low, high = (np.array([f(x[inside]), f(y[inside])]) for f in (np.min, np.max))
-        found.append((low[0] - PLAY, high[0] + PLAY, low[1] - PLAY, high[1] + PLAY))
+        ends = [side for v in (x[inside], y[inside]) for side in (v.min() - PLAY, v.max() + PLAY)]
+        a, b, c, d = (float(f(v)) for f, v in zip((np.floor, np.ceil) * 2, ends, strict=True))
+        found.append((a, b, c, d))
     return found
 
 

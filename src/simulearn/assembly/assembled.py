@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.assembly.assembly import Assembly, Part
-from simulearn.assembly.obstacles import Surface, surfaces
+from simulearn.assembly.obstacles import surfaces
 from simulearn.assembly.timeline import Timeline, timeline
 from simulearn.errors import Cancel, ComputationError, InputError, Message
 from simulearn.simulate import Failure, Outcome, Progress, Result, Simulator
+from simulearn.surfaces import Surface
 
 MANY = 20  # grids; of so many only the corners are kept
 
@@ -21,8 +22,8 @@ class PartCollision:
     """Where two parts, a part and itself, or a part and an obstacle are in each other.
 
     Attributes:
-        names: of the two; twice the same within a part.
-        beams: of either; -1 of an obstacle.
+        names: of the two; twice the same within a part, an obstacle last.
+        where: what of either, as "beam 3" or "joint 7"; empty of an obstacle.
         time: s, when it is worst.
         step: in which that is.
         depth_mm: how deep.
@@ -30,7 +31,7 @@ class PartCollision:
     """
 
     names: tuple[str, str]
-    beams: tuple[int, int]
+    where: tuple[str, str]
     time: float
     step: int
     depth_mm: float
@@ -119,8 +120,10 @@ def simulate_assembly(
         cancel: stops the simulation.
 
     Raises:
+        InputError: an obstacle cannot be read.
         CancelledError: the token was set.
     """
+    around = surfaces(assembly)
     distinct = assembly.distinct
     first = list(dict.fromkeys(distinct))
     grids = [assembly.parts[k].grid for k in first]
@@ -134,4 +137,5 @@ def simulate_assembly(
     ]
     by_grid = dict(zip(first, kept, strict=True))
     outcomes = [by_grid[k] for k in distinct]
-    return Assembled(assembly, engine.name, tuple(outcomes), surfaces(assembly))
+    said = tuple(message for surface in around.values() for message in surface.warnings)
+    return Assembled(assembly, engine.name, tuple(outcomes), around, warnings=said)

@@ -64,8 +64,11 @@ def write_assembled(assembled: Assembled, path: Path | str, cancel: Cancel | Non
             "translation": shift[0].tolist(),
             "weights": weights[0].tolist(),
         }
-        tracks.add(len(nodes), "weights", weights)
-        tracks.add(len(nodes), "translation", shift)
+        # Not every viewer takes the weights of a node, but all play those of an animation.
+        if weights.any():
+            tracks.add(len(nodes), "weights", weights)
+        if (shift != shift[0]).any():
+            tracks.add(len(nodes), "translation", shift)
         nodes.append(node)
     for name, surface in assembled.obstacles.items():
         nodes.append({"name": name, "mesh": len(meshes)})
@@ -78,10 +81,8 @@ def write_assembled(assembled: Assembled, path: Path | str, cancel: Cancel | Non
         "meshes": meshes,
         "materials": list(materials.values()),
     }
-    if tracks.channels:
-        motion = {"name": "assembly", "samplers": tracks.samplers, "channels": tracks.channels}
-        scene["animations"] = [motion]
-    data = file.bytes(scene)
+    motion = {"name": "assembly", "samplers": tracks.samplers, "channels": tracks.channels}
+    data = file.bytes(scene | {"animations": [motion]})
     with replacing(path) as temporary:
         temporary.write_bytes(data)
 
@@ -97,9 +98,7 @@ class _Tracks:
         self.known: dict[tuple[str, bytes], int] = {}
 
     def add(self, node: int, path: str, values: Array) -> None:
-        """Let a node's property have values (M, n) at the moments, if they ever change."""
-        if (values == values[0]).all():
-            return
+        """Let a node's property have values (M, n) at the moments."""
         data = np.concatenate([values[:1], values, values[-1:]])
         key = path, data.tobytes()
         if key not in self.known:
