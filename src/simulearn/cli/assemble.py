@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 MOST = 12  # collisions that are printed
 VIEW = (-62.0, 18.0)  # degrees
-ENDINGS = ".json .png .pdf .svg .strip.png .gif .mp4 .webm .glb"
+ENDINGS = ".json .png .pdf .svg .strip.png .gif .mp4 .webm .glb .html"
 
 
 @app.command()
