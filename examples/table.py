@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from simulearn.assembly import Assembly, Part, write_assembly
+from simulearn.assembly import Assembly, Part, Step, write_assembly
 from simulearn.grid import grid_to_dict, make
 from simulearn.inverse import Task, rank, task_from_dict, write_task
 from simulearn.rigid import Place
@@ -25,6 +25,7 @@ from simulearn.simulate import Result, engine, one, results
 
 LENGTH = 60.0  # mm, of the beams
 LEFT, RIGHT = 3, 5  # joints where units touch
+APART, SHARED = 60.0, 8.0  # mm: how far out units morph; how deep neighbours are in each other
 PICKS = 10  # at most; the paper's designer made seven
 CORNERS = [(3.6, 3.6), (-3.6, 3.6), (-3.6, -3.6), (3.6, -3.6)]  # of a joint, mm
 PAIRS = {
@@ -66,7 +67,7 @@ def contact_angle(result: Result) -> float:
 
 
 def ring(result: Result, units: int) -> Assembly:
-    """Return units in a ring about the z axis, each in its place; neighbours touch."""
+    """Return units in a ring about the z axis: they morph apart, then come to their places."""
     left, right = result.centres[-1, LEFT], result.centres[-1, RIGHT]
     radius = np.linalg.norm(right - left) / 2 / np.tan(np.pi / units)
     # The unit's x goes around, its y up, its z outwards.
@@ -80,8 +81,12 @@ def ring(result: Result, units: int) -> Assembly:
         )
         for k, name in enumerate(names)
     ]
-    joined = zip(names, names[1:] + names[:1], strict=True)
-    return Assembly(tuple(parts), joined=tuple(joined), name="ring")
+    out = [APART * (part.place.turn[:, 2]) for part in parts]  # a unit's z goes outwards
+    slides = {name: (float(x), float(y), 0.0) for name, (x, y, _) in zip(names, out, strict=True)}
+    steps = (Step(tuple(names), name="all units morph"), Step((), slide=slides, name="the ring"))
+    # Neighbours have a joint in one place, where they are to be glued.
+    joined = tuple(zip(names, names[1:] + names[:1], strict=True))
+    return Assembly(tuple(parts), steps, joined=joined, joined_mm=SHARED, name="ring")
 
 
 def main(words: list[str] | None = None) -> tuple[float, Result]:

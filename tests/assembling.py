@@ -30,7 +30,7 @@ class Rolling:
         ]
 
 
-def at(x, y=0.0, z=0.0):
+def at(x=0.0, y=0.0, z=0.0):
     return Place(shift=np.array([x, y, z], dtype=float))
 
 

@@ -49,7 +49,7 @@ def assemble(
 ) -> None:
     """Simulate parts put together, in their order: what runs into what."""
     from simulearn import outputs
-    from simulearn.assembly import assembled_to_dict, read_assembly, simulate_assembly
+    from simulearn.assembly import assembled_to_dict, checked, read_assembly, simulated
     from simulearn.show import Camera
     from simulearn.simulate import engine as engine_of
 
@@ -57,8 +57,11 @@ def assemble(
     outputs.check(files, file, outputs.ASSEMBLED)
     assembly = read_assembly(file)
     answering = engine_of(engine, model, mesh)
-    with preparing(quiet=as_json), counting("frames", quiet=as_json) as progress:
-        assembled = simulate_assembly(assembly, answering, progress)
+    with preparing(quiet=as_json):
+        with counting("frames", quiet=as_json) as progress:
+            assembled = simulated(assembly, answering, progress)
+        with counting("steps checked", quiet=as_json) as progress:
+            assembled = checked(assembled, progress)
     for name, failure in assembled.failures.items():
         reason = f"{failure.message}; {failure.hint}" if failure.hint else failure.message
         err.print(f"[red]failed:[/] {escape(f'part {name}: {reason}')}")
