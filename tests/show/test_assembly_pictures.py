@@ -27,8 +27,8 @@ def assembled(tmp_path_factory):
 
 
 def colliding(assembled):
-    place = np.array([0.0, 280.0, 10.0])
-    hit = PartCollision(("second", "wall"), ("beam 3", ""), 2.0, 1, 3.25, place)
+    place = (0.0, 280.0, 10.0)
+    hit = PartCollision(("second", "wall"), ("beam 3", "obstacle"), 2.0, 1, 3.25, place)
     return dataclasses.replace(assembled, collisions=(hit,))
 
 
@@ -45,10 +45,13 @@ def near(picture, colour, within=0.02):
 def test_the_end_shows_obstacles_and_rings_where_parts_collide(assembled):
     plain = pixels(assembled_picture(assembled))
     ringed = pixels(assembled_picture(colliding(assembled)))
-    assert not near(plain, style.MARK).any()
-    assert near(ringed, style.MARK).sum() > 50
+    assert not near(plain, style.COLLISION).any()
+    assert near(ringed, style.COLLISION).sum() > 50
     texts = [t.get_text() for t in assembled_picture(colliding(assembled)).texts]
-    assert any("1 collision; second with wall by 3.2 mm in step 2" in text for text in texts)
+    assert any(
+        "1 collision, the deepest second (beam 3) with wall by 3.2 mm in step 2" in text
+        for text in texts
+    )
     wooden = np.abs(np.diff(plain / plain.sum(axis=-1, keepdims=True), axis=-1)).max(axis=-1)
     assert (wooden > 0.01).mean() > 0.1  # what is not grey: the wall and actuators
 

@@ -17,10 +17,14 @@ from simulearn.collisions import Body, Collision, against, between
 from simulearn.errors import Cancel, stop_if
 from simulearn.schedule import FRAMES
 from simulearn.simulate import Progress, Result
+from simulearn.simulate.skin import edges
 from simulearn.surfaces import Surface
 
 Array = NDArray[np.float64]
-Present = Sequence[tuple[int, Part, Result]]
+Row = tuple[int, Part, Result]  # which part, the part, its result
+Present = Sequence[Row]
+
+ALONG = np.linspace(0, 1, 13)  # of a beam, between which places it is taken as straight
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +106,7 @@ def _all(
 ) -> Iterator[PartCollision]:
     yield from _within(assembly, present, moments)
     triangles = {name: one.vertices[one.faces] for name, one in obstacles.items()}
-    steps = len(assembly.order)
+    bodies, steps = _Bodies(present, moments), len(assembly.order)
     for step in range(-1, steps):  # first as all stands before the first step
         own = moments.of_step(max(step, 0))[: 1 if step < 0 else None]
         there = [row for row in present if not moments.waiting[own[-1], row[0]]]
@@ -110,7 +114,7 @@ def _all(
         moves = (frames != frames[:1]) | (shifts != shifts[:1]).any(axis=2)
         moving = [row for row in there if step < 0 or moves[:, row[0]].any()]
         still = [row for row in there if row not in moving]
-        yield from _in_step(moving, still, triangles, moments, own, cancel)
+        yield from _in_step(moving, still, triangles, bodies, own, cancel)
         if progress is not None:
             progress(step + 1, steps)
 
@@ -119,11 +123,12 @@ def _in_step(
     moving: Present,
     still: Present,
     triangles: Mapping[str, Array],
-    moments: Timeline,
+    bodies: "_Bodies",
     own: NDArray[np.int64],
     cancel: Cancel | None,
 ) -> Iterator[PartCollision]:
     """Yield the collisions of parts that move, with each other and with all else."""
+    moments = bodies.moments
 
     def said(one: Collision, names: tuple[str, str], where: tuple[str, str]) -> PartCollision:
         next_one = min(one.frame + 1, len(own) - 1)
@@ -132,16 +137,19 @@ def _in_step(
         step = int(moments.steps[own[next_one]])
         return PartCollision(names, where, time, step, one.depth_mm, one.place)
 
-    bodies = [_placed(row, moments, own) for row in moving]
-    for body, (_, part, _) in zip(bodies, moving, strict=True):
+    moving_bodies = [bodies.at(row, own) for row in moving]
+    for body, (_, part, _) in zip(moving_bodies, moving, strict=True):
         for name, shape in triangles.items():
             stop_if(cancel)
             for one in against(body, shape):
                 yield said(one, (part.name, name), one.parts)
     stop_if(cancel)
+    boxes = [_box(body) for body in moving_bodies]
+    rows = [(row, body) for row in still if _near(body := bodies.at(row, own[:1]), boxes)]
+    still = [row for row, _ in rows]
     # What stands still is one body, since its parts are not compared with each other.
-    resting = [_placed(row, moments, own) for row in still]
-    for one in between([*bodies, *([_merged(resting)] if resting else [])]):
+    resting = [bodies.at(row, own) for row in still]
+    for one in between([*moving_bodies, *([_merged(resting)] if resting else [])]):
         sides = [
             (moving[k][1].name, what) if k < len(moving) else _part_of(what, still, resting)
             for k, what in zip(one.bodies, one.parts, strict=True)
@@ -153,18 +161,45 @@ def _in_step(
         yield said(one, (a, b), (where_a, where_b))
 
 
-def _placed(row: tuple[int, Part, Result], moments: Timeline, own: NDArray[np.int64]) -> Body:
-    """Return a part at moments, in its place."""
-    k, part, result = row
-    frames, shifts = moments.frames[own, k], moments.shifts[own, k]
+class _Bodies:
+    """The parts at moments, in their places; their beams as they are drawn, in short pieces."""
 
-    def at(corners: Array) -> Array:
+    def __init__(self, present: Present, moments: Timeline) -> None:
+        self.moments = moments
+        sections: dict[int, Array] = {}
+        for _, _, result in present:
+            if id(result) not in sections:
+                beams = range(len(result.grid.beams))
+                along = [edges(result, b, ALONG) for b in beams]
+                sections[id(result)] = np.stack(along, axis=1)
+        self.sections = sections
+
+    def at(self, row: Row, own: NDArray[np.int64]) -> Body:
+        """Return a part at some moments."""
+        k, part, result = row
+        frames, shifts = self.moments.frames[own, k], self.moments.shifts[own, k]
         before = np.minimum(frames.astype(int), FRAMES - 2)
-        share = (frames - before).reshape(-1, *[1] * (corners.ndim - 1))
-        now = (1 - share) * corners[before] + share * corners[before + 1]
-        return part.place(now) + shifts.reshape(-1, *[1] * (corners.ndim - 2), 3)
 
-    return Body(at(result.joints), at(result.beams), result.grid.beams, result.grid.actuators)
+        def placed(corners: Array) -> Array:
+            share = (frames - before).reshape(-1, *[1] * (corners.ndim - 1))
+            now = (1 - share) * corners[before] + share * corners[before + 1]
+            return part.place(now) + shifts.reshape(-1, *[1] * (corners.ndim - 2), 3)
+
+        sections = placed(self.sections[id(result)])
+        return Body(placed(result.joints), sections, result.grid.beams)
+
+
+def _box(body: Body) -> tuple[Array, Array]:
+    """Return the lowest and highest corner (3,) of a body over all its frames."""
+    both = body.joints.reshape(-1, 3), body.sections.reshape(-1, 3)
+    low, high = ([end(points, axis=0) for points in both] for end in (np.min, np.max))
+    return np.minimum(*low), np.maximum(*high)
+
+
+def _near(body: Body, boxes: Sequence[tuple[Array, Array]]) -> bool:
+    """Return whether a body's box meets one of others."""
+    low, high = _box(body)
+    return any(bool(((low < b) & (a < high)).all()) for a, b in boxes)
 
 
 def _merged(bodies: Sequence[Body]) -> Body:
@@ -174,7 +209,6 @@ def _merged(bodies: Sequence[Body]) -> Body:
         np.concatenate([body.joints for body in bodies], axis=1),
         np.concatenate([body.sections for body in bodies], axis=1),
         np.concatenate([b.beams + k for b, k in zip(bodies, starts, strict=False)]),
-        np.concatenate([body.ratios for body in bodies if body.ratios is not None]),
     )
 
 

@@ -18,5 +18,5 @@ def surfaces(assembly: Assembly) -> dict[str, Surface]:
         except InputError as error:
             text = f"obstacles[{k}].file: {error}"
             raise InputError(text, error.code, error.where) from error
-        found[one.name] = surface.moved(one.place.turn, one.place.shift)
+        found[one.name] = surface.placed(one.place)
     return found

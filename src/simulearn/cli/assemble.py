@@ -125,7 +125,7 @@ def _steps(assembled: "Assembled") -> Table:
 
 def _collisions(assembled: "Assembled") -> None:
     """Print what collides, the deepest first."""
-    found = sorted(assembled.collisions, key=_depth, reverse=True)
+    found = assembled.collisions
     for one in found[:MOST]:
         x, y, z = one.place
         err.print(f"[yellow]collision:[/] {escape(one.words)}, at {x:.0f}, {y:.0f}, {z:.0f} mm")
@@ -133,7 +133,3 @@ def _collisions(assembled: "Assembled") -> None:
         err.print(f"[yellow]and {len(found) - MOST} more collisions[/]")
     if not found:
         out.print("no collisions")
-
-
-def _depth(one: object) -> float:
-    return float(getattr(one, "depth_mm", 0.0))
