@@ -227,7 +227,7 @@ def _within(assembly: Assembly, present: Present, moments: Timeline) -> Iterator
     for k, part, result in present:
         if distinct[k] != k:
             continue
-        for one in getattr(result, "collisions", ()):  # TODO
+        for one in result.collisions:
             # The first moment that shows it: before the timeline, of a part that is ready.
             m = int(np.argmax(moments.frames[:, k] >= one.frame + one.share - 1e-9))
             corner = part.place(np.array(one.place)) + moments.shifts[m, k]
