@@ -26,12 +26,8 @@ from simulearn.inverse.kinds import AtPoints, OnSet
 from simulearn.palette import BEADS
 from simulearn.schedule import SCHEDULE
 from simulearn.show import style
-<<<<<<< HEAD
 from simulearn.simulate import Result, collision_text
-=======
-from simulearn.simulate import Result
 from simulearn.surfaces import Curve, Surface
->>>>>>> goals
 
 Array = NDArray[np.float64]
 Colour = str | tuple[float, float, float]
