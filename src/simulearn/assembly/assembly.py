@@ -2,8 +2,8 @@
 
 Steps come one after another. The parts that a step names morph in it, from flat to their last
 frame; before their step they are flat, and a part that no step names has morphed beforehand. A
-part may come to its place on a straight line, before it morphs or while it does. Without any step
-all parts morph at once.
+part may come to its place on a straight line, before it morphs, while it does, or in a step of its
+own; until then it waits where the line begins. Without any step all parts morph at once.
 """
 
 from collections.abc import Mapping, Sequence
@@ -118,9 +118,11 @@ class Assembly:
             raise wrong("parts", "is empty; an assembly has at least one part")
         _once([part.name for part in self.parts], "parts", ".name")
         _once([one.name for one in self.obstacles], "obstacles", ".name")
+        for k, obstacle in enumerate(self.obstacles):
+            if obstacle.name in self.places_of:
+                raise wrong(f"obstacles[{k}].name", f"is {shown(obstacle.name)}, as that of a part")
         for k, part in enumerate(self.parts):
-            if part.copy_of is not None:
-                self._known(part.copy_of, f"parts[{k}].copy_of")
+            self._check_copy(part, f"parts[{k}].copy_of")
         morphed: dict[str, str] = {}
         slid: dict[str, str] = {}
         for k, step in enumerate(self.steps):
@@ -130,9 +132,6 @@ class Assembly:
             for name in step.slide:
                 self._known(name, f"steps[{k}].slide")
                 _first(slid, name, f"steps[{k}].slide.{name}", "slides")
-                if name in morphed and name not in step.parts:
-                    where = f"steps[{k}].slide.{name}"
-                    raise wrong(where, f"comes after {morphed[name]}; a part slides, then morphs")
             if not step.parts and not step.slide:
                 raise wrong(f"steps[{k}]", "names no part; a step has parts or slide")
         for k, pair in enumerate(self.joined):
@@ -156,6 +155,17 @@ class Assembly:
         """For each part, the first part that has the same grid."""
         first: dict[str, int] = {}
         return tuple(first.setdefault(p.grid.digest, k) for k, p in enumerate(self.parts))
+
+    def _check_copy(self, part: Part, where: str) -> None:
+        """Raise where a part is a copy of what is no part, a copy itself, or another grid."""
+        if part.copy_of is None:
+            return
+        self._known(part.copy_of, where)
+        source = self.parts[self.places_of[part.copy_of]]
+        if source.copy_of is not None:
+            raise wrong(where, f"is {shown(part.copy_of)}, a copy itself; name what it copies")
+        if source.grid.digest != part.grid.digest:
+            raise wrong(where, f"is {shown(part.copy_of)}, whose grid is another one")
 
     def _known(self, name: str, where: str) -> None:
         if name not in self.places_of:

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from simulearn.palette import BOTTOM, TOP
 
 PASSIVE, JOINT, FIXED = "#dcdcdc", "#a6a6a6", "#3a3a3a"
+SOLID = "#e3d6c1"  # of an obstacle
 GHOST, GHOST_LINE = "#f0f0f0", "#cfcfcf"
 COLLISION = "#c8102e"  # the ring where parts run through each other
 INK, LINE = "#262626", "#4d4d4d"
