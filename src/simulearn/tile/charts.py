@@ -1,7 +1,7 @@
 """Charts: surfaces by two parameters from 0 to 1, and how their parameters are spread evenly."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 At = Callable[[Array, Array], Array]  # u (N,), v (N,) -> (N, 3) mm
 
 SAMPLES = 97  # along each parameter, where lengths are measured
-SMALL = 1e-4  # difference of a parameter from which directions are taken
+SMALL = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,10 +21,12 @@ class Chart:
     Attributes:
         at: gives the points (N, 3) mm at u (N,) and v (N,).
         closed: whether it comes back to where it began, along u and along v.
+        step: difference of a parameter by which directions are taken.
     """
 
     at: At
     closed: tuple[bool, bool] = (False, False)
+    step: float = SMALL
 
     @cached_property
     def sampled(self) -> Array:
@@ -41,7 +43,7 @@ class Chart:
 
     def normals(self, u: Array, v: Array) -> Array:
         """Return unit normals (N, 3) to the outside; zero where the surface is folded to a line."""
-        across = np.cross(self._direction(u, v, (SMALL, 0.0)), self._direction(u, v, (0.0, SMALL)))
+        across = np.cross(self._direction(u, v, (self.step, 0.0)), self._direction(u, v, (0.0, self.step)))
         size = np.linalg.norm(across, axis=1, keepdims=True)
         flat = size < 1e-12 * max(float(size.max(initial=0.0)), 1e-300)
         return np.where(flat, 0.0, across / np.where(flat, 1.0, size))
@@ -54,7 +56,7 @@ class Chart:
         def at(u: Array, v: Array) -> Array:
             return self.at(np.interp(u, shares[0], line), np.interp(v, shares[1], line))
 
-        return Chart(at, self.closed)
+        return replace(self, at=at)
 
     def _progress(self, axis: int) -> Array:
         """Return the mean length (SAMPLES,) mm from the beginning, along u (0) or v (1)."""
