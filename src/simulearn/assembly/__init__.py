@@ -1,5 +1,6 @@
 """Several grids put together: where each is, in which order they morph, what touches."""
 
+from simulearn.assembly.assembled import Assembled, PartCollision, simulate_assembly
 from simulearn.assembly.assembly import Assembly, Obstacle, Part, Step
 from simulearn.assembly.assemblyfile import (
     assembly_from_dict,
@@ -9,12 +10,15 @@ from simulearn.assembly.assemblyfile import (
 )
 
 __all__ = [
+    "Assembled",
     "Assembly",
     "Obstacle",
     "Part",
+    "PartCollision",
     "Step",
     "assembly_from_dict",
     "assembly_to_dict",
     "read_assembly",
+    "simulate_assembly",
     "write_assembly",
 ]

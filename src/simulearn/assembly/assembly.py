@@ -2,8 +2,8 @@
 
 Steps come one after another. The parts that a step names morph in it, from flat to their last
 frame; before their step they are flat, and a part that no step names has morphed beforehand. A
-part may come to its place on a straight line, before it morphs or while it does. Without any step
-all parts morph at once.
+part may come to its place on a straight line, before it morphs, while it does, or in a step of its
+own; until then it waits where the line begins. Without any step all parts morph at once.
 """
 
 from collections.abc import Mapping, Sequence
@@ -130,9 +130,6 @@ class Assembly:
             for name in step.slide:
                 self._known(name, f"steps[{k}].slide")
                 _first(slid, name, f"steps[{k}].slide.{name}", "slides")
-                if name in morphed and name not in step.parts:
-                    where = f"steps[{k}].slide.{name}"
-                    raise wrong(where, f"comes after {morphed[name]}; a part slides, then morphs")
             if not step.parts and not step.slide:
                 raise wrong(f"steps[{k}]", "names no part; a step has parts or slide")
         for k, pair in enumerate(self.joined):

@@ -51,10 +51,15 @@ def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
 
 
 def draw_skin(
-    ax: Axes, vertices: Array, surface: Skin, fixed: int, camera: Camera
+    ax: Axes,
+    vertices: Array,
+    surface: Skin,
+    fixed: int,
+    camera: Camera,
+    colours: Array | None = None,
 ) -> PolyCollection:
     """Draw a skin with its vertices (V, 3) where they are now, and return what was drawn."""
-    faces, rgb, lines, order = painted(vertices, surface, fixed, camera)
+    faces, rgb, lines, order = painted(vertices, surface, fixed, camera, colours)
     ink = np.array(to_rgb(style.INK))
     shapes = [*faces, *lines]
     fill = np.concatenate([np.c_[rgb, np.ones(len(rgb))], np.zeros((len(lines), 4))])
@@ -75,7 +80,11 @@ def draw_skin(
 
 
 def painted(
-    vertices: Array, surface: Skin, fixed: int, camera: Camera
+    vertices: Array,
+    surface: Skin,
+    fixed: int,
+    camera: Camera,
+    colours: Array | None = None,
 ) -> tuple[Array, Array, Array, NDArray[np.int64]]:
     """Return what a painter draws of a skin.
 
@@ -84,6 +93,7 @@ def painted(
         surface: the skin.
         fixed: the fixed joint.
         camera: where the viewer is.
+        colours: (Q, 3) of the quadrilaterals; None: those of joints and actuators.
 
     Returns:
         faces (Q, 4, 2) that are turned to the viewer, mm to the right and up; their colours (Q, 3);
@@ -93,8 +103,9 @@ def painted(
     normals = _normals(corners)
     front = normals @ camera.axes[2] > 0
     corners, normals = corners[front], normals[front]
-    rgb = style.colours(surface.ratio[front], surface.joint[front], fixed)
-    rgb = rgb * camera.light(normals)[:, None]
+    if colours is None:
+        colours = style.colours(surface.ratio, surface.joint, fixed)
+    rgb = colours[front] * camera.light(normals)[:, None]
     projected = camera.see(corners)
 
     sharp = _outlined(surface, front)[front]

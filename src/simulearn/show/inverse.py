@@ -19,12 +19,12 @@ from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import ROBUST, Step
 from simulearn.inverse.ranking import Ranking, Suggestion
 from simulearn.show import style
-from simulearn.show.animation import PAUSE, write_gif
 from simulearn.show.camera import Camera
 from simulearn.show.deformed import draw_deformed, draw_skin, draw_triad, qualified
 from simulearn.show.deformed import extent as extent_deformed
 from simulearn.show.flat import draw_flat
 from simulearn.show.flat import extent as extent_flat
+from simulearn.show.moving import PAUSE, write_gif
 from simulearn.simulate import Result, skin
 
 Array = NDArray[np.float64]
