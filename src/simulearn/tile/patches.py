@@ -57,11 +57,11 @@ class Tiling:
         return mask
 
     @cached_property
-    def neighbours(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of modules that share a border: more than one point."""
+    def touching(self) -> tuple[tuple[int, int], ...]:
+        """Pairs of modules that share a point."""
         held = np.zeros((len(self.modules), len(self.points)), dtype=int)
         np.put_along_axis(held, self.modules, 1, axis=1)
-        pairs = np.argwhere(np.triu(held @ held.T > 1, 1))
+        pairs = np.argwhere(np.triu(held @ held.T, 1))
         return tuple((int(a), int(b)) for a, b in pairs)
 
     def warned(self, *messages: Message) -> "Tiling":

@@ -115,6 +115,11 @@ class Tiled:
     warnings: tuple[Message, ...]
 
     @property
+    def width(self) -> float:
+        """Width of a beam, mm."""
+        return load_material(self.settings.material).section.width
+
+    @property
     def beams(self) -> Array:
         """(M, B, 3) mm, centres of the beams' middle sections in their places."""
         beams = []
