@@ -6,11 +6,16 @@ All files are checked before anything is computed: a wrong name should not cost 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from tempfile import TemporaryFile
+from typing import TYPE_CHECKING
 
 from simulearn.errors import Cancel, InputError, stop_if
 from simulearn.extras import require
 from simulearn.files import replacing
-from simulearn.simulate import Result, write_json, write_npz
+from simulearn.simulate import Progress, Result, write_json, write_npz
+
+if TYPE_CHECKING:
+    from simulearn.assembly import Assembled
+    from simulearn.show import Camera
 
 Writer = Callable[[Result, Path], None]
 
@@ -91,8 +96,11 @@ WRITERS: dict[str, Writer] = {
     ".vtu": _vtu,
     ".pvd": _pvd,
 }
-NEEDS = {".html": "nicegui", ".3dm": "rhino3dm", ".vtu": "meshio", ".pvd": "meshio"}
 FILMS = (".mp4", ".webm")
+PICTURES = (".png", ".pdf", ".svg")
+STRIPS = tuple(f".strip{ending}" for ending in PICTURES)
+ASSEMBLED = (".json", *PICTURES, *STRIPS, ".gif", *FILMS, ".glb")  # endings for an assembly
+NEEDS = {".html": "nicegui", ".3dm": "rhino3dm", ".vtu": "meshio", ".pvd": "meshio"}
 
 
 def ending_of(path: Path, known: Iterable[str] = WRITERS) -> str:
@@ -112,18 +120,19 @@ def ending_of(path: Path, known: Iterable[str] = WRITERS) -> str:
     return max(found, key=len)
 
 
-def check(paths: Sequence[Path], grid: Path | None = None) -> None:
+def check(paths: Sequence[Path], grid: Path | None = None, known: Iterable[str] = WRITERS) -> None:
     """Make sure that a result can be written to these files.
 
     Args:
         paths: the files.
         grid: the file that the design comes from, which no result may replace.
+        known: endings that there are: of a result, or of an assembly.
 
     Raises:
         InputError: an ending is unknown, a package is missing, or a place cannot be written.
     """
     for path in paths:
-        check_package(path, ending_of(path))
+        check_package(path, ending_of(path, known))
         check_place(path, [grid] if grid is not None else [])
 
 
@@ -190,3 +199,47 @@ def write(result: Result, path: Path, cancel: Cancel | None = None) -> None:
         _animation(result, path, cancel)
     else:
         writer(result, path)
+
+
+def write_assembled(
+    assembled: "Assembled",
+    path: Path,
+    camera: "Camera | None" = None,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> None:
+    """Write an assembly in the format of the file's ending, one of ASSEMBLED.
+
+    Args:
+        assembled: what to write.
+        path: the file.
+        camera: where the viewer of pictures is; None: where it usually is.
+        progress: of an animation: called with the pictures done and the pictures in all.
+        cancel: stops it.
+
+    Raises:
+        InputError: the file cannot be written.
+        CancelledError: the token was set.
+    """
+    stop_if(cancel)
+    ending = ending_of(path, ASSEMBLED)
+    if ending == ".json":
+        from simulearn.assembly import write_assembled_json
+
+        write_assembled_json(assembled, path)
+        return
+    if ending == ".glb":
+        from simulearn.interop import write_assembled as write_scene
+
+        write_scene(assembled, path, cancel)
+        return
+    from simulearn.show import assembly as show
+
+    seen = camera or show.CAMERA
+    if ending not in (*PICTURES, *STRIPS):
+        show.animate_assembly(assembled, path, seen, progress=progress, cancel=cancel)
+        return
+    draw = show.strip if ending in STRIPS else show.assembled_picture
+    picture = draw(assembled, camera=seen)
+    with replacing(path) as temporary:
+        picture.savefig(temporary)

@@ -8,6 +8,7 @@ from simulearn.assembly.assemblyfile import (
     read_assembly,
     write_assembly,
 )
+from simulearn.assembly.resultfile import assembled_to_dict, write_assembled_json
 
 __all__ = [
     "Assembled",
@@ -16,9 +17,11 @@ __all__ = [
     "Part",
     "PartCollision",
     "Step",
+    "assembled_to_dict",
     "assembly_from_dict",
     "assembly_to_dict",
     "read_assembly",
     "simulate_assembly",
+    "write_assembled_json",
     "write_assembly",
 ]

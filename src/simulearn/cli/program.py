@@ -19,6 +19,7 @@ from rich.markup import escape
 
 from simulearn import __version__
 from simulearn.cli import (  # noqa: F401  (they add their commands)
+    assemble,
     calibrate,
     compare,
     dataset,

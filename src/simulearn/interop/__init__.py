@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from simulearn.interop.assembled import write_assembled as write_assembled
     from simulearn.interop.html import write_html as write_html
     from simulearn.interop.morphing import write_morph as write_morph
     from simulearn.interop.surface import write_surface as write_surface
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 PLACES = {  # name -> module
     "write_3dm": "threedm",
+    "write_assembled": "assembled",
     "write_csv": "table",
     "write_html": "html",
     "write_job_3dm": "threedm",
@@ -29,6 +31,7 @@ PLACES = {  # name -> module
 
 __all__ = [
     "write_3dm",
+    "write_assembled",
     "write_csv",
     "write_html",
     "write_job_3dm",
