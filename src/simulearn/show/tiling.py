@@ -95,8 +95,8 @@ def _draw(
         ax.fill(x, y, fc=PATCH if normals[m] > 0 else BACK, ec=PATCH_LINE, lw=0.5, zorder=2)
         for b, (i, j) in enumerate(_beams(tiled, m)):
             line = np.stack([points[m, i], middles[m, b], points[m, j]])[:, :2].T
-            ax.plot(*line, color=SHADES(norm(beams[m, b])), lw=2.2, zorder=2.1,
-                    solid_capstyle="round")  # fmt: skip
+            for colour, wide in ((style.LINE, 2.6), (SHADES(norm(beams[m, b])), 2.0)):
+                ax.plot(*line, color=colour, lw=wide, zorder=2.1, solid_capstyle="round")
         dots: dict[str, Any] = {"edgecolors": style.LINE, "linewidths": 0.3, "zorder": 2.2}
         colours = SHADES(norm(joints[m]))
         ax.scatter(*points[m, :, :2].T, s=11, c=colours, **dots)

@@ -33,13 +33,14 @@ from simulearn.tile.starting import start
 
 Array = NDArray[np.float64]
 
-VERSION = 1  # raise it when a search answers differently, so that older answers are not taken
+VERSION = 2  # raise it when a search answers differently, so that older answers are not taken
 GOOD = 0.05  # mm by the engine, where a search ends
 POSES = 4  # times that the place is fitted again
 STILL = 0.02  # mm that targets move by a place that is as good as the last
-CORRECTED = 0.15  # mm by finite elements, above which the search goes on from a check
+CORRECTED = 0.15  # mm by finite elements, above which the search may go on from a check
+WORTH = 0.3  # of the error, that the engine must be off by for that
 TRIES = 3  # starts where an answer is not near
-NEAR = 1.5  # mm
+NEAR = 0.4  # mm
 SECONDS = 120.0  # of one search, at most
 SPREAD = 0.3  # of ratios, of starts after the first
 
@@ -148,9 +149,11 @@ class _Search:
             answer = self._checked(space.grid_at(now.x, now.a), now.points, shift)
             if best is None or answer.error_mm < best.error_mm:
                 best = answer
-            if not answer.checked or answer.error_mm < CORRECTED or k == job.corrections:
+            after = np.array(answer.shift)
+            off = float(np.linalg.norm(after - shift, axis=1).mean())
+            if k == job.corrections or answer.error_mm < CORRECTED or off < WORTH * answer.error_mm:
                 break
-            shift = np.array(answer.shift)
+            shift = after
             now = self._nearer(space, now.x, now.a, shift)
         assert best is not None
         return replace(best, designs=self.designs, checks=self.checks)
