@@ -21,7 +21,9 @@ def test_moved_targets_bring_versions_closer_and_stay_on_the_surface():
     source = np.random.default_rng(1)
     bent = kinds + source.normal(0, 0.5, kinds.shape)
     found = fit(tiling, members, bent, tiling.points)
-    before = np.array([p(m.shape(bent[m.kind])) for p, m in zip(found.places, members, strict=True)])
+    before = np.array(
+        [p(m.shape(bent[m.kind])) for p, m in zip(found.places, members, strict=True)]
+    )
     np.testing.assert_allclose(gaps(tiling, before), found.gaps, atol=1e-12)
     moved = np.linalg.norm(found.targets - tiling.points, axis=1)
     assert moved[tiling.shared].max() > 0.1

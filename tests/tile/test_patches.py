@@ -68,9 +68,12 @@ def test_between_two_edges_it_begins_and_ends_at_them_in_the_directions_asked_fo
     ],
 )
 def test_wrong_surfaces_are_told_by_key(part, where):
-    with pytest.raises(InputError) as error:
+    def points():
         chart = chart_from_dict({"schema": "simulearn.chart/1", **part})
-        chart.at(np.zeros(1), np.zeros(1))
+        return chart.at(np.zeros(1), np.zeros(1))
+
+    with pytest.raises(InputError) as error:
+        points()
     assert where in str(error.value)
     assert "\n" not in str(error.value)
 

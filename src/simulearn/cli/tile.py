@@ -13,7 +13,7 @@ from rich.table import Table
 from simulearn.cli.base import Json, app, err, folder_of, out, warn, write_json
 from simulearn.cli.progress import bar, counting, preparing
 from simulearn.errors import InputError
-from simulearn.files import cores, replacing
+from simulearn.files import replacing
 from simulearn.grid import write_grid
 from simulearn.material import read_material
 
@@ -55,7 +55,7 @@ def tile_(
     ] = None,
     gap: Annotated[
         float, typer.Option(min=0.01, metavar="MM", help="Gap at which the rounds end.")
-    ] = 0.5,
+    ] = 1.0,
     rounds: Annotated[
         int, typer.Option(min=0, help="In which borders are brought together, at most.")
     ] = 3,

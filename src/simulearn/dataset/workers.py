@@ -49,9 +49,7 @@ class Workers:
 
 
 @contextmanager
-def local_workers(
-    processes: int, longest: float = LONGEST, work: Work = run
-) -> Iterator[Workers]:
+def local_workers(processes: int, longest: float = LONGEST, work: Work = run) -> Iterator[Workers]:
     """Yield processes of this machine.
 
     They do not run the caller's script again, as new processes do in Python: it needs no guard.
@@ -124,9 +122,7 @@ def _without_script() -> Iterator[None]:
 
 
 @contextmanager
-def cluster_workers(
-    address: str, waiting: float = WAITING, work: Work = run
-) -> Iterator[Workers]:
+def cluster_workers(address: str, waiting: float = WAITING, work: Work = run) -> Iterator[Workers]:
     """Yield the workers of a Dask cluster.
 
     Args:

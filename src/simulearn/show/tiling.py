@@ -1,4 +1,4 @@
-"""The map of a tiling: patches of the surface, joints and beams coloured by how far off they are."""
+"""The map of a tiling: patches of the surface, joints and beams by how far off they are."""
 
 from typing import Any
 

@@ -38,12 +38,12 @@ class Member:
     away_mm: float
 
     def shape(self, points: Array) -> Array:
-        """Return where a kind's points (K, 3) are, in the order of the patch, before it is placed."""
+        """Return a kind's points (K, 3) in the order of the patch, before it is placed."""
         own = points * MIRROR if self.mirrored else points
         return own[self.order]
 
     def targets(self, points: Array, like: Array) -> Array:
-        """Return a patch's points (K, 3) as targets of the kind's joints, laid over others (K, 3)."""
+        """Return a patch's points (K, 3) in the order of the kind, laid over others (K, 3)."""
         own = np.empty_like(points)
         own[self.order] = points
         if self.mirrored:
@@ -107,9 +107,7 @@ def averaged(targets: Array, members: Sequence[Member], like: Array) -> Array:
     return means
 
 
-def _member(
-    points: Array, kinds: Sequence[Array], own: Indices, tolerance: float
-) -> Member | None:
+def _member(points: Array, kinds: Sequence[Array], own: Indices, tolerance: float) -> Member | None:
     """Return how a patch is of the first kind that it is alike; None if it is of none."""
     if not kinds:
         return None
@@ -126,7 +124,7 @@ def _member(
 
 
 def _away(shapes: Array, points: Array) -> Array:
-    """Return how far (...) mm shapes (..., K, 3) are from points (K, 3), rigidly fitted: largest."""
+    """Return the largest distances (...) mm of rigidly fitted shapes (..., K, 3) from points."""
     local = shapes - shapes.mean(axis=-2, keepdims=True)
     turn, centre = fit_rotation(np.broadcast_to(points, shapes.shape), local)
     laid = np.einsum("...ij,...kj->...ki", turn, local) + centre[..., None, :]

@@ -43,7 +43,9 @@ class Chart:
 
     def normals(self, u: Array, v: Array) -> Array:
         """Return unit normals (N, 3) to the outside; zero where the surface is folded to a line."""
-        across = np.cross(self._direction(u, v, (self.step, 0.0)), self._direction(u, v, (0.0, self.step)))
+        across = np.cross(
+            self._direction(u, v, (self.step, 0.0)), self._direction(u, v, (0.0, self.step))
+        )
         size = np.linalg.norm(across, axis=1, keepdims=True)
         flat = size < 1e-12 * max(float(size.max(initial=0.0)), 1e-300)
         return np.where(flat, 0.0, across / np.where(flat, 1.0, size))

@@ -91,7 +91,9 @@ def flattened(points: Array, normals: Array, grid: Grid) -> Array:
 
 def _diagonals(grid: Grid) -> Indices:
     """Return the pairs of joints (D, 2) across the cells of a lattice."""
-    places = {tuple(p): k for k, p in enumerate(np.round(grid.joints / _step(grid)).astype(int).tolist())}
+    places = {
+        tuple(p): k for k, p in enumerate(np.round(grid.joints / _step(grid)).astype(int).tolist())
+    }
     pairs = [
         (k, places[i + 1, j + step])
         for (i, j), k in places.items()

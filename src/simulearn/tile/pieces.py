@@ -135,6 +135,4 @@ def deviations(tiled: Tiled) -> tuple[Array, Array]:
 
 def _mirrored(grid: Grid) -> Grid:
     """Return the mirror image of a grid; an actuator keeps its half."""
-    return Grid(
-        grid.joints * [-1.0, 1.0], grid.beams, grid.actuators, grid.fixed, grid.material
-    )
+    return Grid(grid.joints * [-1.0, 1.0], grid.beams, grid.actuators, grid.fixed, grid.material)

@@ -58,7 +58,7 @@ class Settings:
     """
 
     alike_mm: float = 0.25
-    gap_mm: float = 0.5
+    gap_mm: float = 1.0
     rounds: int = 3
     seconds: float | None = None
     engine: str = "learned"
@@ -229,14 +229,15 @@ class _Rounds:
         self, number: int, answers: list[ModuleAnswer], now: Fit
     ) -> tuple[list[ModuleAnswer], bool]:
         """Return the answers after a search for moved targets, and whether one has changed."""
-        open_ = now.gaps > self.settings.gap_mm / 2
-        wide = {
-            m.kind
-            for m, points in zip(self.members, self.tiling.modules, strict=True)
-            if open_[points].any()
-        }
+        wide = now.gaps > self.settings.gap_mm
+        chosen = sorted(
+            {
+                member.kind
+                for member, points in zip(self.members, self.tiling.modules, strict=True)
+                if wide[points].any()
+            }
+        )
         targets = averaged(now.targets[self.tiling.modules], self.members, self.kinds)
-        chosen = sorted(wide)
         jobs = [self._job(k, targets[k], 0, answers[k]) for k in chosen]
         after, changed = list(answers), False
         for k, answer in zip(chosen, self.asking.answers(number, jobs), strict=True):
@@ -413,7 +414,9 @@ def _fitting(tiling: Tiling, training: TrainingRange) -> None:
         return
     wrong = long if long > most else short
     name = tiling.names[int(np.argwhere((lengths == wrong).any(axis=1))[0, 0])]
-    text = f"module {name} has a beam of {wrong:.0f} mm; beams of {least:g} to {most:g} mm are learnt"
+    text = (
+        f"module {name} has a beam of {wrong:.0f} mm; beams of {least:g} to {most:g} mm are learnt"
+    )
     if long / short > most / least:
         text += ". Modules differ too much: draw a quad mesh whose quads are of one size"
     else:

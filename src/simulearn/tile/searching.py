@@ -225,10 +225,8 @@ class _Search:
         whole = space.nearest(x, a)
         begin = problem.best = problem.scored(x, whole)
         try:
-            last = None
-            for last in relaxed(problem, x, a):
-                pass
-            snapped = None if last is None else rounded(problem, *last)
+            steps = list(relaxed(problem, x, a))
+            snapped = rounded(problem, *steps[-1]) if steps else None
             begin = problem.best
             if snapped is not None and np.isfinite(begin.error):
                 for _ in descent(problem, begin):

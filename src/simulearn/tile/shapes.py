@@ -47,7 +47,8 @@ def heights(z: Heights, x: tuple[float, float], y: tuple[float, float]) -> Chart
 
     Args:
         z: gives heights (N,) mm over places x (N,), y (N,) mm.
-        x, y: ranges of the places, mm.
+        x: range of the places along x, mm.
+        y: the same along y.
     """
 
     def at(u: Array, v: Array) -> Array:
@@ -83,8 +84,8 @@ def between(
     """Return the surface from one edge curve to another: ruled, or smooth where it is led.
 
     Args:
-        first, second: (N, 3) mm, smooth curves through points; the second is turned round where
-            it runs against the first.
+        first: (N, 3) mm, a smooth curve goes through the points.
+        second: likewise; turned round where it runs against the first.
         leaving: (3,) mm, direction in which the surface leaves the first; its length says how
             stiffly. None: straight to the second.
         arriving: (3,) mm, direction in which it comes to the second.
@@ -93,7 +94,9 @@ def between(
         u along the curves, v from the first to the second; cubic in v (Hermite).
     """
     start, end = _points(first, 3, "first"), _points(second, 3, "second")
-    if np.linalg.norm(start[[0, -1]] - end[[0, -1]]) > np.linalg.norm(start[[0, -1]] - end[[-1, 0]]):
+    if np.linalg.norm(start[[0, -1]] - end[[0, -1]]) > np.linalg.norm(
+        start[[0, -1]] - end[[-1, 0]]
+    ):
         end = end[::-1]
     curves = smooth(start), smooth(end)
     leads = [None if lead is None else _direction(lead) for lead in (leaving, arriving)]

@@ -46,7 +46,9 @@ def read_tiling(
         text = "only the joints of a quad mesh are put onto another surface"
         raise InputError(text, "modules", "onto")
     if modules is None and size is None:
-        text = f"{path}: say how many modules (as 5x3) or of what size, mm; only a quad mesh says it"
+        text = (
+            f"{path}: say how many modules (as 5x3) or of what size, mm; only a quad mesh says it"
+        )
         raise InputError(text, "modules", "modules")
     surface = None
     if path.suffix.lower() == ".json":

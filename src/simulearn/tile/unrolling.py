@@ -7,6 +7,8 @@ no triangle of a patch is turned over (Tutte 1963; Floater, "One-to-one piecewis
 2003).
 """
 
+from itertools import pairwise
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -22,8 +24,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 LEAST = 1e-3  # of a cotangent weight
+ALONG_RIM = 1e3  # times the length of an edge, so that a cut leaves a rim at once
 STEP = 0.01  # of a parameter, over which directions are taken
-FINEST = 16  # triangles along a side, below which a mesh is split first
 HINT = "cut it in a modelling program, or draw a quad mesh with a quad for each module"
 
 
@@ -52,7 +54,7 @@ def unrolled(surface: Surface) -> Chart:
 def _chart(corners: Array, uv: Array, closed: bool) -> Chart:
     """Return the chart of triangles (T, 3, 3) mm with parameters (T, 3, 2)."""
     if closed:  # the same triangles a turn before and after
-        uv = np.concatenate([uv + [k, 0.0] for k in (-1, 0, 1)])
+        uv = np.concatenate([uv + np.array([k, 0.0]) for k in (-1, 0, 1)])
         corners = np.concatenate([corners] * 3)
     flat = np.concatenate([uv, np.zeros((*uv.shape[:2], 1))], axis=-1)
     sheet = Surface(flat.reshape(-1, 3), np.arange(3 * len(flat)).reshape(-1, 3))
@@ -187,17 +189,16 @@ def _beyond(vertices: Array, faces: Indices, one: Indices, other: Indices) -> Ar
     a, b = faces[:, start].ravel(), faces[:, end].ravel()
     size = np.linalg.norm(vertices[b] - vertices[a], axis=1)
     count = len(vertices)
-    # A large step along a rim, so that the cut leaves it at once.
     on_rim = np.zeros(count, dtype=bool)
     on_rim[one] = on_rim[other] = True
-    size = size * np.where(on_rim[a] & on_rim[b], 1e3, 1.0)
+    size = size * np.where(on_rim[a] & on_rim[b], ALONG_RIM, 1.0)
     graph = csr_array((np.r_[size, size], (np.r_[a, b], np.r_[b, a])), shape=(count, count))
     away, before = dijkstra(graph, indices=int(one[0]), return_predecessors=True)
     path = [int(other[away[other].argmin()])]
     while path[-1] != one[0]:
         path.append(int(before[path[-1]]))
     path = path[::-1]
-    cut = set(zip(path, path[1:], strict=False))
+    cut = set(pairwise(path))
     # Corners of one vertex are joined where their faces share an edge that is not cut.
     owner = {(int(p), int(q)): k for k, (p, q) in enumerate(zip(a, b, strict=True))}
     rows, columns = [], []
