@@ -136,7 +136,7 @@ def optimize(
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
-    for line in search_words(figures, result, wanted.aims.vertices):
+    for line in search_words(figures, result):
         out.print(line)
     names = ["best.json", "summary.json", "history.csv", *names]
     out.print(f"wrote {escape(str(folder))}/{', '.join(names)}")
@@ -213,7 +213,7 @@ def rank(
             outcomes = simulator.simulate([suggestion.grid for suggestion in ranking.best])
             drawn = [k for k, outcome in enumerate(outcomes) if isinstance(outcome, Result)]
             shown = replace(ranking, best=tuple(ranking.best[k] for k in drawn))
-            picture = cards(shown, [one(outcomes[k]) for k in drawn], task.aims if task else None)
+            picture = cards(shown, [one(outcomes[k]) for k in drawn], ranking.goals)
             with replacing(path) as temporary:
                 picture.savefig(temporary)
     if as_json:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError, Message
+from simulearn.rigid import Place
 from simulearn.surfaces.tree import Tree
 
 Array = NDArray[np.float64]
@@ -62,9 +63,9 @@ class Curve:
         """Diagonal of its box, mm."""
         return float(np.linalg.norm(np.ptp(self.points, axis=0)))
 
-    def moved(self, turn: Array, shift: Array) -> "Curve":
-        """Return the curve turned (3, 3) and then shifted (3,) mm."""
-        return replace(self, points=self.points @ np.asarray(turn).T + shift)
+    def placed(self, place: Place) -> "Curve":
+        """Return the curve after a rigid motion."""
+        return replace(self, points=place(self.points))
 
     def scaled(self, factor: float) -> "Curve":
         """Return the curve so many times as large, about the origin."""

@@ -37,10 +37,9 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     messages: list[Message] = []
     vertices = np.ascontiguousarray(vertices, np.float64)
     faces = np.ascontiguousarray(faces, np.int64)
-    there: Mask = (np.abs(vertices) < FARTHEST).all(axis=1)  # False where it is NaN
-    known: Mask = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
-    sound: Mask = there[np.where(known[:, None], faces, 0)].all(axis=1)
-    sound &= known
+    there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
+    known = np.all((faces >= 0) & (faces < len(vertices)), axis=1)
+    sound = known & np.all(there[np.where(known[:, None], faces, 0)], axis=1)
     faces = _kept(faces, sound, "have corners that are no finite numbers", "not-finite", messages)
     vertices, faces = _merged(vertices, faces)
     corners = vertices[faces]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulearn.errors import InputError, Message
+from simulearn.rigid import Place
 from simulearn.surfaces.tree import Tree
 
 Array = NDArray[np.float64]
@@ -108,9 +109,16 @@ class Surface:
         """Diagonal of its box, mm."""
         return float(np.linalg.norm(np.diff(self.box, axis=0)))
 
-    def moved(self, turn: Array, shift: Array) -> "Surface":
-        """Return the surface turned (3, 3) and then shifted (3,) mm."""
-        return replace(self, vertices=self.vertices @ np.asarray(turn).T + shift)
+    def spread(self, count: int) -> tuple[Array, Array]:
+        """Return places (count, 3) mm that are spread over the surface by area, and normals."""
+        a, b, c = np.moveaxis(self.vertices[self.faces], 1, 0)
+        area = np.cumsum(np.linalg.norm(np.cross(b - a, c - a), axis=1))
+        at = np.searchsorted(area, (np.arange(count) + 0.5) / count * area[-1])
+        return (a + b + c)[at] / 3, self.normals[at]
+
+    def placed(self, place: Place) -> "Surface":
+        """Return the surface after a rigid motion."""
+        return replace(self, vertices=place(self.vertices))
 
     def scaled(self, factor: float) -> "Surface":
         """Return the surface so many times as large, about the origin."""
