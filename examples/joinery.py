@@ -37,9 +37,9 @@ LENGTH = 55.0  # mm, of the beams
 VARIANTS = ((0.25, 0.25), (0.5, 0.5), (0.25, 0.75), (0.5, 0.75), (0.75, 0.75))
 STIFFENING = 0.5  # of the rim beams along the corner, which keep the ends straight
 SIDES = (0.5, 0.55, 0.6)  # ratios of a side piece
-NARROW, GAP = 30.0, 12.0  # mm: width of a side piece between joints, its distance from the centre
+NARROW, GAP = 30.0, 16.0  # mm: width of a side piece between joints, its distance from the centre
 SLIDE = 130.0  # mm, from where the side pieces come, along the corner
-WOOD, STAND = 12.0, 2.0  # mm: thickness of the panels; how far their faces are before the joints
+WOOD, STAND = 12.0, 0.5  # mm: thickness of the panels; how far their faces are before the joints
 PANEL = (125.0, 280.0)  # mm
 PLAY = 1.5  # mm, around all that goes through a slit
 CAMERA = Camera(azimuth=-68.0, elevation=-22.0)
@@ -131,14 +131,15 @@ def put_together(centre: Result, narrow: Result) -> tuple[tuple[Part, ...], dict
 def slits(
     results: list[tuple[Result, Place]], panel: Place, frames: slice
 ) -> list[tuple[float, float, float, float]]:
-    """Return the slits (x, x, y, y) mm that a panel needs for the pieces in some frames."""
+    """Return the slits (x, x, y, y), whole mm, that a panel needs for the pieces in some frames."""
     found = []
     for result, place in results:
         corners = [result.joints[frames].reshape(-1, 3), result.beams[frames].reshape(-1, 3)]
         x, y, z = panel.back(place(np.concatenate(corners))).T
         inside = z > -STAND - PLAY
-        low, high = (np.array([f(x[inside]), f(y[inside])]) for f in (np.min, np.max))
-        found.append((low[0] - PLAY, high[0] + PLAY, low[1] - PLAY, high[1] + PLAY))
+        ends = [side for v in (x[inside], y[inside]) for side in (v.min() - PLAY, v.max() + PLAY)]
+        a, b, c, d = (float(f(v)) for f, v in zip((np.floor, np.ceil) * 2, ends, strict=True))
+        found.append((a, b, c, d))
     return found
 
 
@@ -171,12 +172,9 @@ def panel_with(slits: list[tuple[float, float, float, float]]) -> trimesh.Trimes
     return trimesh.Trimesh(points, faces.reshape(-1, 3))
 
 
-def written(parts: tuple[Part, ...], panels: dict[str, Place], folder: Path) -> Assembly:
-    """Return the assembly in its order, the centrepiece first; panels are read from a folder."""
+def in_order(parts: tuple[Part, ...], obstacles: list[Obstacle]) -> Assembly:
+    """Return the assembly in its order, the centrepiece first."""
     offsets = {"back": (0.0, SLIDE, 0.0), "front": (0.0, -SLIDE, 0.0)}
-    obstacles = [
-        Obstacle(f"{name} panel", folder / f"{name}.stl", place) for name, place in panels.items()
-    ]
     steps = (
         Step(("centre",), 1.5, name="the centrepiece curls"),
         Step(("back", "front"), 1.5, offsets, name="the sides slide in and curl"),
@@ -189,14 +187,18 @@ def assemble(
 ) -> Assembled:
     """Cut slits for what the pieces need in some frames, and check the assembly."""
     parts, panels = put_together(centre, narrow)
-    placed = [(centre if p.name == "centre" else narrow, p.place) for p in parts]
+    placed = [(centre if part.name == "centre" else narrow, part.place) for part in parts]
+    obstacles = []
     for key, place in panels.items():
-        panel_with(slits(placed, place, frames)).export(folder / f"{key}.stl")
-    made = written(parts, panels, folder)
+        file = folder / f"{name}-{key}.stl"
+        panel_with(slits(placed, place, frames)).export(file)
+        obstacles.append(Obstacle(f"{key} panel", file, place))
+    made = in_order(parts, obstacles)
     write_assembly(made, folder / f"{name}.json")
     assembled = simulate_assembly(made, engine(centre.engine))
-    hits = [one.words for one in assembled.collisions] or ["no collisions"]
-    print(f"{name}, {assembled.engine}: {'; '.join(hits[:4])}")
+    found = assembled.collisions
+    worst = f", the deepest {found[0].words}" if found else ""
+    print(f"{name}, by {assembled.engine}: {len(found)} collisions{worst}")
     return assembled
 
 

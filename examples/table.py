@@ -7,6 +7,7 @@ an arc of that angle ends, and the tool suggests five modifications. The designe
 the one with the best angle, until none brings it closer.
 
     python examples/table.py [-o out/table] [--units 6] [--engine learned]
+    simulearn assemble out/table/ring.json -o ring.glb
 """
 
 import argparse
@@ -14,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from simulearn.assembly import Assembly, Part, Step, write_assembly
 from simulearn.grid import grid_to_dict, make
 from simulearn.inverse import Task, rank, task_from_dict, write_task
 from simulearn.rigid import Place
@@ -23,6 +25,7 @@ from simulearn.simulate import Result, engine, one, results
 
 LENGTH = 60.0  # mm, of the beams
 LEFT, RIGHT = 3, 5  # joints where units touch
+APART, SHARED = 60.0, 8.0  # mm: how far out units morph; how deep neighbours are in each other
 PICKS = 10  # at most; the paper's designer made seven
 CORNERS = [(3.6, 3.6), (-3.6, 3.6), (-3.6, -3.6), (3.6, -3.6)]  # of a joint, mm
 PAIRS = {
@@ -63,15 +66,27 @@ def contact_angle(result: Result) -> float:
     return float(np.degrees(np.arccos(np.clip(left @ right, -1, 1))))
 
 
-def ring(result: Result, units: int) -> list[tuple[Result, Place]]:
-    """Return units in a ring about the z axis, each in its place."""
+def ring(result: Result, units: int) -> Assembly:
+    """Return units in a ring about the z axis: they morph apart, then come to their places."""
     left, right = result.centres[-1, LEFT], result.centres[-1, RIGHT]
     radius = np.linalg.norm(right - left) / 2 / np.tan(np.pi / units)
     # The unit's x goes around, its y up, its z outwards.
     turn = np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])
     middle = turn @ (left + right) / 2
     stand = Place(turn, np.array([radius, 0, 0]) - middle)
-    return [(result, Place.about_z(360 / units * k).after(stand)) for k in range(units)]
+    names = [f"unit {k + 1}" for k in range(units)]
+    parts = [
+        Part(
+            name, result.grid, Place.about_z(360 / units * k).after(stand), names[0] if k else None
+        )
+        for k, name in enumerate(names)
+    ]
+    out = [APART * (part.place.turn[:, 2]) for part in parts]  # a unit's z goes outwards
+    slides = {name: (float(x), float(y), 0.0) for name, (x, y, _) in zip(names, out, strict=True)}
+    steps = (Step(tuple(names), name="all units morph"), Step((), slide=slides, name="the ring"))
+    # Neighbours have a joint in one place, where they are to be glued.
+    joined = tuple(zip(names, names[1:] + names[:1], strict=True))
+    return Assembly(tuple(parts), steps, joined=joined, joined_mm=SHARED, name="ring")
 
 
 def main(words: list[str] | None = None) -> tuple[float, Result]:
@@ -104,7 +119,10 @@ def main(words: list[str] | None = None) -> tuple[float, Result]:
     angle = contact_angle(unit)
     print(f"contact angle by finite elements {angle:.1f} of {wanted:.1f} degrees")
     text = f"{options.units} units, contact angle {angle:.1f} of {wanted:.1f} degrees"
-    assembly(ring(unit, options.units), text).savefig(options.output / "ring.png")
+    closed = ring(unit, options.units)
+    write_assembly(closed, options.output / "ring.json")
+    placed = [(unit, part.place) for part in closed.parts]
+    assembly(placed, text).savefig(options.output / "ring.png")
     return angle, unit
 
 

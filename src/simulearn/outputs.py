@@ -99,7 +99,15 @@ WRITERS: dict[str, Writer] = {
 FILMS = (".mp4", ".webm")
 PICTURES = (".png", ".pdf", ".svg")
 STRIPS = tuple(f".strip{ending}" for ending in PICTURES)
-ASSEMBLED = (".json", *PICTURES, *STRIPS, ".gif", *FILMS, ".glb")  # endings for an assembly
+ASSEMBLED = (
+    ".json",
+    *PICTURES,
+    *STRIPS,
+    ".gif",
+    *FILMS,
+    ".glb",
+    ".html",
+)  # endings for an assembly
 NEEDS = {".html": "nicegui", ".3dm": "rhino3dm", ".vtu": "meshio", ".pvd": "meshio"}
 
 
@@ -236,6 +244,11 @@ def write_assembled(
     from simulearn.show import assembly as show
 
     seen = camera or show.CAMERA
+    if ending == ".html":
+        from simulearn.interop import write_assembled_html
+
+        write_assembled_html(assembled, path, seen, cancel)
+        return
     if ending not in (*PICTURES, *STRIPS):
         show.animate_assembly(assembled, path, seen, progress=progress, cancel=cancel)
         return

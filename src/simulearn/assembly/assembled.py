@@ -4,44 +4,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from simulearn.assembly.assembly import Assembly, Part
-from simulearn.assembly.obstacles import Surface, surfaces
+from simulearn.assembly.checking import PartCollision, collisions_of
+from simulearn.assembly.obstacles import surfaces
 from simulearn.assembly.timeline import Timeline, timeline
 from simulearn.errors import Cancel, ComputationError, InputError, Message
 from simulearn.simulate import Failure, Outcome, Progress, Result, Simulator
+from simulearn.surfaces import Surface
 
 MANY = 20  # grids; of so many only the corners are kept
-
-
-@dataclass(frozen=True, eq=False)
-class PartCollision:
-    """Where two parts, a part and itself, or a part and an obstacle are in each other.
-
-    Attributes:
-        names: of the two; twice the same within a part.
-        beams: of either; -1 of an obstacle.
-        time: s, when it is worst.
-        step: in which that is.
-        depth_mm: how deep.
-        place: (3,) mm.
-    """
-
-    names: tuple[str, str]
-    beams: tuple[int, int]
-    time: float
-    step: int
-    depth_mm: float
-    place: NDArray[np.float64]
-
-    @property
-    def words(self) -> str:
-        """What collides, and how deep."""
-        a, b = self.names
-        what = f"{a} with itself" if a == b else f"{a} with {b}"
-        return f"{what} by {self.depth_mm:.1f} mm in step {self.step + 1}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,21 +81,35 @@ def simulate_assembly(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Assembled:
-    """Return the outcomes of an assembly's parts; equal grids are simulated once.
+    """Return the outcomes of an assembly's parts, and what runs into what.
 
     Args:
         assembly: the parts.
         engine: that simulates them.
         progress: called with the frames done and the frames in all.
-        cancel: stops the simulation.
+        cancel: stops the simulation and the checks.
 
     Raises:
+        InputError: an obstacle cannot be read.
         CancelledError: the token was set.
     """
+    return checked(simulated(assembly, engine, progress, cancel), cancel=cancel)
+
+
+def simulated(
+    assembly: Assembly,
+    engine: Simulator,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+) -> Assembled:
+    """Return the outcomes of an assembly's parts, unchecked; equal grids are simulated once.
+
+    The arguments are those of `simulate_assembly`.
+    """
+    around = surfaces(assembly)
     distinct = assembly.distinct
     first = list(dict.fromkeys(distinct))
-    grids = [assembly.parts[k].grid for k in first]
-    outcomes = engine.simulate(grids, progress, cancel)
+    outcomes = engine.simulate([assembly.parts[k].grid for k in first], progress, cancel)
     # Stresses and solids of all parts at once may not fit into memory.
     kept = [
         replace(one, stress=None, solid=None, displacements=None)
@@ -133,5 +118,30 @@ def simulate_assembly(
         for one in outcomes
     ]
     by_grid = dict(zip(first, kept, strict=True))
-    outcomes = [by_grid[k] for k in distinct]
-    return Assembled(assembly, engine.name, tuple(outcomes), surfaces(assembly))
+    said = tuple(message for surface in around.values() for message in surface.warnings)
+    parts = tuple(by_grid[k] for k in distinct)
+    return Assembled(assembly, engine.name, parts, around, warnings=said)
+
+
+def checked(
+    assembled: Assembled, progress: Progress | None = None, cancel: Cancel | None = None
+) -> Assembled:
+    """Return an assembly with its collisions; parts without a result are left out.
+
+    Args:
+        assembled: the outcomes of its parts.
+        progress: called with the steps checked and the steps in all.
+        cancel: stops it within a step.
+
+    Raises:
+        CancelledError: the token was set.
+    """
+    found = collisions_of(
+        assembled.assembly,
+        assembled.present,
+        assembled.obstacles,
+        assembled.timeline,
+        progress,
+        cancel,
+    )
+    return replace(assembled, collisions=found)

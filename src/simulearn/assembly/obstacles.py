@@ -1,23 +1,22 @@
 """The surfaces of an assembly's obstacles, in their places."""
 
-from dataclasses import dataclass
-
-import numpy as np
-import trimesh
-from numpy.typing import NDArray
-
 from simulearn.assembly.assembly import Assembly
-
-
-@dataclass(frozen=True)
-class Surface:  # TODO: simulearn.surfaces
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
+from simulearn.errors import InputError
+from simulearn.surfaces import Surface, read_surface
 
 
 def surfaces(assembly: Assembly) -> dict[str, Surface]:
+    """Return the surfaces of the obstacles in their places, by name.
+
+    Raises:
+        InputError: a file cannot be read or holds no surface; one line says which.
+    """
     found = {}
-    for one in assembly.obstacles:
-        mesh = trimesh.load_mesh(one.file)
-        found[one.name] = Surface(one.place(np.asarray(mesh.vertices)), np.asarray(mesh.faces))
+    for k, one in enumerate(assembly.obstacles):
+        try:
+            surface = read_surface(one.file, one.unit)
+        except InputError as error:
+            text = f"obstacles[{k}].file: {error}"
+            raise InputError(text, error.code, error.where) from error
+        found[one.name] = surface.placed(one.place)
     return found

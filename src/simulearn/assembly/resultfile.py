@@ -66,7 +66,7 @@ def assembled_to_dict(assembled: Assembled) -> dict[str, Any]:
         "collisions": [
             {
                 "names": list(one.names),
-                "beams": list(one.beams),
+                "where": list(one.where),
                 "step": one.step,
                 "time": round(one.time, DIGITS),
                 "depth_mm": round(one.depth_mm, DIGITS),

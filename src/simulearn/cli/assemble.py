@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 MOST = 12  # collisions that are printed
 VIEW = (-62.0, 18.0)  # degrees
-ENDINGS = ".json .png .pdf .svg .strip.png .gif .mp4 .webm .glb"
+ENDINGS = ".json .png .pdf .svg .strip.png .gif .mp4 .webm .glb .html"
 
 
 @app.command()
@@ -49,7 +49,7 @@ def assemble(
 ) -> None:
     """Simulate parts put together, in their order: what runs into what."""
     from simulearn import outputs
-    from simulearn.assembly import assembled_to_dict, read_assembly, simulate_assembly
+    from simulearn.assembly import assembled_to_dict, checked, read_assembly, simulated
     from simulearn.show import Camera
     from simulearn.simulate import engine as engine_of
 
@@ -57,8 +57,11 @@ def assemble(
     outputs.check(files, file, outputs.ASSEMBLED)
     assembly = read_assembly(file)
     answering = engine_of(engine, model, mesh)
-    with preparing(quiet=as_json), counting("frames", quiet=as_json) as progress:
-        assembled = simulate_assembly(assembly, answering, progress)
+    with preparing(quiet=as_json):
+        with counting("frames", quiet=as_json) as progress:
+            assembled = simulated(assembly, answering, progress)
+        with counting("steps checked", quiet=as_json) as progress:
+            assembled = checked(assembled, progress)
     for name, failure in assembled.failures.items():
         reason = f"{failure.message}; {failure.hint}" if failure.hint else failure.message
         err.print(f"[red]failed:[/] {escape(f'part {name}: {reason}')}")
@@ -122,7 +125,7 @@ def _steps(assembled: "Assembled") -> Table:
 
 def _collisions(assembled: "Assembled") -> None:
     """Print what collides, the deepest first."""
-    found = sorted(assembled.collisions, key=_depth, reverse=True)
+    found = assembled.collisions
     for one in found[:MOST]:
         x, y, z = one.place
         err.print(f"[yellow]collision:[/] {escape(one.words)}, at {x:.0f}, {y:.0f}, {z:.0f} mm")
@@ -130,7 +133,3 @@ def _collisions(assembled: "Assembled") -> None:
         err.print(f"[yellow]and {len(found) - MOST} more collisions[/]")
     if not found:
         out.print("no collisions")
-
-
-def _depth(one: object) -> float:
-    return float(getattr(one, "depth_mm", 0.0))

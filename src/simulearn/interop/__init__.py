@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from simulearn.interop.assembled import write_assembled as write_assembled
+    from simulearn.interop.assembled_html import write_assembled_html as write_assembled_html
     from simulearn.interop.html import write_html as write_html
     from simulearn.interop.morphing import write_morph as write_morph
     from simulearn.interop.surface import write_surface as write_surface
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 PLACES = {  # name -> module
     "write_3dm": "threedm",
     "write_assembled": "assembled",
+    "write_assembled_html": "assembled_html",
     "write_csv": "table",
     "write_html": "html",
     "write_job_3dm": "threedm",
@@ -32,6 +34,7 @@ PLACES = {  # name -> module
 __all__ = [
     "write_3dm",
     "write_assembled",
+    "write_assembled_html",
     "write_csv",
     "write_html",
     "write_job_3dm",

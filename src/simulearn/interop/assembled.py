@@ -1,8 +1,9 @@
-"""An assembly that morphs, as one glTF file: a mesh for each grid, a node for each part.
+"""An assembly that morphs, as one glTF file: a node for each part, one animation for all.
 
-Parts with equal grids share a mesh; each has its own place, its own weights of the morph targets
-and its own motion, so that one animation shows the sequence. What a key would only repeat on a
-straight line is left out.
+Each part has its place, its weights of the morph targets and its motion. Parts with equal grids
+share all arrays, but not the mesh that names them: viewers keep weights by mesh (Blender) or find
+what moves by its name (three.js), and would move only one of them. Keys on a straight line between
+their neighbours are left out.
 """
 
 from collections.abc import Mapping
@@ -41,31 +42,42 @@ def write_assembled(assembled: Assembled, path: Path | str, cancel: Cancel | Non
         InputError: the file cannot be written.
         CancelledError: the token was set.
     """
+    data = scene_of(assembled, cancel)
+    with replacing(path) as temporary:
+        temporary.write_bytes(data)
+
+
+def scene_of(assembled: Assembled, cancel: Cancel | None = None) -> bytes:
+    """Return an assembly that morphs as glTF; see `write_assembled`."""
     assembled.require()
     file = GltfFile()
     materials: dict[str, dict[str, Any]] = {}
     meshes: list[dict[str, Any]] = []
-    numbers: dict[int, int] = {}
+    shapes: dict[int, list[dict[str, Any]]] = {}
     nodes: list[dict[str, Any]] = []
     tracks = _Tracks(file, assembled.timeline.times)
     moments = assembled.timeline
     for k, part, result in assembled.present:
         stop_if(cancel)
-        if id(result) not in numbers:
-            numbers[id(result)] = len(meshes)
-            meshes.append(_mesh(file, result, part.name, materials))
+        if id(result) not in shapes:
+            shapes[id(result)] = _shapes(file, result, materials)
+        names = {"targetNames": list(SCHEDULE.names[1:])}
+        meshes.append({"name": part.name, "primitives": shapes[id(result)], "extras": names})
         turn = Rotation.from_matrix(Y_UP @ part.place.turn @ Y_UP.T).as_quat()
         shift = METRE * (part.place.shift + moments.shifts[:, k]) @ Y_UP.T
         weights = _weights(moments.frames[:, k])
         node = {
             "name": part.name,
-            "mesh": numbers[id(result)],
+            "mesh": len(meshes) - 1,
             "rotation": turn.tolist(),
             "translation": shift[0].tolist(),
             "weights": weights[0].tolist(),
         }
-        tracks.add(len(nodes), "weights", weights)
-        tracks.add(len(nodes), "translation", shift)
+        # Not every viewer takes the weights of a node, but all play those of an animation.
+        if weights.any():
+            tracks.add(len(nodes), "weights", weights)
+        if (shift != shift[0]).any():
+            tracks.add(len(nodes), "translation", shift)
         nodes.append(node)
     for name, surface in assembled.obstacles.items():
         nodes.append({"name": name, "mesh": len(meshes)})
@@ -78,12 +90,8 @@ def write_assembled(assembled: Assembled, path: Path | str, cancel: Cancel | Non
         "meshes": meshes,
         "materials": list(materials.values()),
     }
-    if tracks.channels:
-        motion = {"name": "assembly", "samplers": tracks.samplers, "channels": tracks.channels}
-        scene["animations"] = [motion]
-    data = file.bytes(scene)
-    with replacing(path) as temporary:
-        temporary.write_bytes(data)
+    motion = {"name": "assembly", "samplers": tracks.samplers, "channels": tracks.channels}
+    return file.bytes(scene | {"animations": [motion]})
 
 
 class _Tracks:
@@ -97,9 +105,7 @@ class _Tracks:
         self.known: dict[tuple[str, bytes], int] = {}
 
     def add(self, node: int, path: str, values: Array) -> None:
-        """Let a node's property have values (M, n) at the moments, if they ever change."""
-        if (values == values[0]).all():
-            return
+        """Let a node's property have values (M, n) at the moments."""
         data = np.concatenate([values[:1], values, values[-1:]])
         key = path, data.tobytes()
         if key not in self.known:
@@ -135,19 +141,15 @@ def _weights(frames: Array) -> Array:
     return np.maximum(near, 0.0)
 
 
-def _mesh(
-    file: GltfFile, result: Result, name: str, materials: dict[str, dict[str, Any]]
-) -> dict[str, Any]:
-    """Return the mesh of a grid: a primitive for each tone, which share their targets' names."""
+def _shapes(
+    file: GltfFile, result: Result, materials: dict[str, dict[str, Any]]
+) -> list[dict[str, Any]]:
+    """Return the primitives of a grid, one for each tone, and add their materials."""
     shapes = []
     for primitive, material in primitives(file, result, skin(result, SPACING)):
         materials.setdefault(material["name"], material)
         shapes.append(primitive | {"material": list(materials).index(material["name"])})
-    return {
-        "name": name,
-        "primitives": shapes,
-        "extras": {"targetNames": list(SCHEDULE.names[1:])},
-    }
+    return shapes
 
 
 def _obstacle(

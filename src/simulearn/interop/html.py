@@ -9,13 +9,16 @@ import gzip
 import json
 import struct
 from base64 import b64encode
+from collections.abc import Mapping
 from functools import cache
 from hashlib import sha256
 from html import escape
 from pathlib import Path
 from string import Template
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from simulearn import __version__
 from simulearn.drawings.pages import SCHEMA as PAGE
@@ -62,9 +65,6 @@ def page(result: Result, title: str = "Shape") -> str:
     Raises:
         InputError: the package with three.js is not installed.
     """
-    start, program, digest = _program()
-    style = "\n".join(path.read_text("utf-8") for path in STYLES)
-    picture, width, height = png(deformed(result))
     contents = {
         "schema": PAGE,
         "grid": grid_to_dict(result.grid),
@@ -72,6 +72,43 @@ def page(result: Result, title: str = "Shape") -> str:
         "seconds": round(float(result.seconds), 3),
         **qualities(result),
     }
+    return filled(
+        "main.js",
+        title,
+        contents,
+        _rounded(frames.to_bytes([result.grid], [result])),
+        deformed(result),
+        f"The shape after creep: {dimensions(result)}",
+        plan(result.grid),
+    )
+
+
+def filled(
+    main: str,
+    title: str,
+    contents: Mapping[str, Any],
+    data: bytes,
+    picture: Figure,
+    words: str,
+    plan: str = "",
+) -> str:
+    """Return a page that runs without a server and without a network.
+
+    Args:
+        main: its program, a module in the folder `page`.
+        title: of the page.
+        contents: what the program reads as JSON.
+        data: what it unpacks.
+        picture: what is seen where nothing can move.
+        words: that say the same as the picture.
+        plan: a drawing (SVG) beside it.
+
+    Raises:
+        InputError: the package with three.js is not installed.
+    """
+    start, program, digest = _program(main)
+    style = "\n".join(path.read_text("utf-8") for path in STYLES)
+    pixels, width, height = png(picture)
     policy = {
         "default-src": "'none'",
         "script-src": f"'sha256-{_digest(start)}' 'sha256-{digest}'",
@@ -86,27 +123,27 @@ def page(result: Result, title: str = "Shape") -> str:
         title=escape(title),
         icon=_data("image/svg+xml", (STUDIO / "icon.svg").read_bytes()),
         style=style,
-        picture=_data("image/png", picture),
+        picture=_data("image/png", pixels),
         width=width,
         height=height,
-        words=escape(f"The shape after creep: {dimensions(result)}"),
-        plan=plan(result.grid),
+        words=escape(words),
+        plan=plan,
         # In a script element only "<" could end it; in JSON it can be written so.
         result=json.dumps(contents, allow_nan=False).replace("<", "\\u003c"),
-        frames=_packed(_rounded(frames.to_bytes([result.grid], [result]))),
+        frames=_packed(data),
         program=program,
         start=start,
     )
 
 
 @cache
-def _program() -> tuple[str, str, str]:
+def _program(main: str) -> tuple[str, str, str]:
     """Return the script that starts the page, the packed program, and the program's digest."""
     found = libraries()
     files = {f"/libraries/{name}": path for name, path in found.items()}
     instead = {STUDIO / "text" / "text.js": OWN / "text.js"}
     start = Bundle().script(OWN / "start.js")
-    program = Bundle({"/page/": STUDIO}, files, instead).script(OWN / "main.js")
+    program = Bundle({"/page/": STUDIO}, files, instead).script(OWN / main)
     return start, _packed(program.encode("utf-8")), _digest(program)
 
 

@@ -29,6 +29,7 @@ PICTURE = 0.06  # s, of a GIF, at least
 FINER = 2  # rows and columns that are painted for one of an animation's
 FILMED = 1.5  # pixels of a film for one of a GIF
 RINGED = 0.5  # s before and after its worst moment that a collision has a ring
+ROW = 4  # moments of a strip that stay in one row
 MOMENTS = 40  # by which it is found how much of the picture the sequence needs
 
 
@@ -89,7 +90,9 @@ def strip(
     low, high = shown.box
     across, up = high - low
     gap = 0.06 * across
-    columns = min(len(times), max(1, round(float(np.sqrt(3.2 * len(times) * up / across)))))
+    columns = len(times)
+    if columns > ROW:
+        columns = min(columns, max(2, round(float(np.sqrt(3.2 * columns * up / across)))))
     rows = -(-len(times) // columns)
     line = 0.22 * across * columns / width  # mm, for the words beneath each
     size = np.array([columns * (across + gap) - gap, rows * (up + gap + line) - gap])
@@ -175,16 +178,12 @@ def qualified(assembled: Assembled) -> list[str]:
         words.append(f"without {', '.join(missing)}")
     count = len(assembled.collisions)
     if count:
-        worst = max(assembled.collisions, key=_depth)
-        words.append(f"{count} collision" + "s" * (count > 1) + f"; {worst.words}")
+        worst = assembled.collisions[0]
+        words.append(f"{count} collision" + "s" * (count > 1) + f", the deepest {worst.words}")
     bounds = [one.bound_mm for _, _, one in assembled.present if one.bound_mm is not None]
     if bounds:
         words.append(f"error of a part below {max(bounds):.2f} mm (9 of 10)")
     return words
-
-
-def _depth(one: Any) -> float:
-    return float(one.depth_mm)
 
 
 def _times(assembled: Assembled, count: int | None) -> list[float]:
@@ -223,4 +222,4 @@ def _picture(shown: Scene, text: str, remarks: list[str], rings: Array, width: f
 def _rings(ax: Axes, places: Array, camera: Camera) -> None:
     """Draw a ring around each place (N, 3) mm."""
     x, y = camera.see(places)[:, :2].T
-    ax.plot(x, y, "o", ms=11, mfc="none", mec=style.MARK, mew=1.3, zorder=5, clip_on=False)
+    ax.plot(x, y, "o", ms=11, mfc="none", mec=style.COLLISION, mew=1.3, zorder=5, clip_on=False)

@@ -146,7 +146,7 @@ def _paint(
     radius, line = (finer * dpi / 72 * points for points in RING)
     for x, y in places(rings) if len(rings) else []:
         box = (x - radius, y - radius, x + radius, y + radius)
-        draw.ellipse(box, outline=style.MARK, width=max(1, round(line)))
+        draw.ellipse(box, outline=style.COLLISION, width=max(1, round(line)))
     return np.asarray(image.reduce(finer))
 
 

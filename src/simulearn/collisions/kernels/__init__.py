@@ -1,0 +1,1 @@
+"""Native kernels of collisions: one set for every grid, without the interpreter's lock."""
