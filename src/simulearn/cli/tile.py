@@ -270,7 +270,7 @@ def _stages(quiet: bool) -> "Iterator[Callable[[Stage], None]]":
             title = f"round {stage.round}" if stage.round else "modules"
             if not task:
                 task.append(shown.add_task(title, total=stage.total, words=""))
-            words = {} if stage.gap_mm is None else {"words": _gap(stage)}
+            words: dict[str, Any] = {} if stage.gap_mm is None else {"words": _gap(stage)}
             shown.update(
                 task[0], description=title, total=stage.total, completed=stage.done, **words
             )

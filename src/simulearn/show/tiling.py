@@ -99,7 +99,8 @@ def _draw(
                 ax.plot(*line, color=colour, lw=wide, zorder=2.1, solid_capstyle="round")
         dots: dict[str, Any] = {"edgecolors": style.LINE, "linewidths": 0.3, "zorder": 2.2}
         colours = SHADES(norm(joints[m]))
-        ax.scatter(*points[m, :, :2].T, s=11, c=colours, **dots)
+        x, y = points[m, :, :2].T
+        ax.scatter(x, y, s=11, c=colours, **dots)
         if len(tiling.names) <= NAMED:
             x, y = points[m, :, :2].mean(axis=0)
             ax.annotate(tiling.names[m], (x, y), xytext=(3, 3), textcoords="offset points",

@@ -77,7 +77,9 @@ def alike(targets: Array, grid: Grid, tolerance: float) -> tuple[Array, tuple[Me
     Returns:
         The targets (kinds, K, 3) mm of the kinds, the mean of their patches, and M members.
     """
-    own, firsts, members = orders(grid), [], []
+    own = orders(grid)
+    firsts: list[Array] = []
+    members: list[Member] = []
     for points in targets:
         member = _member(points, firsts, own, tolerance)
         if member is None:
@@ -86,7 +88,7 @@ def alike(targets: Array, grid: Grid, tolerance: float) -> tuple[Array, tuple[Me
         members.append(member)
     kinds = averaged(targets, members, np.array(firsts))
     return kinds, tuple(
-        replace(member, away_mm=_away(member.shape(kinds[member.kind]), points))
+        replace(member, away_mm=float(_away(member.shape(kinds[member.kind]), points)))
         for member, points in zip(members, targets, strict=True)
     )
 

@@ -121,8 +121,8 @@ def chart_from_dict(data: Any, folder: Path | None = None) -> Chart:
             return _of_heights(file.heights)
         assert file.between is not None
         one = file.between
-        edges = [_edge(edge, folder) for edge in (one.first, one.second)]
-        return between(*edges, one.leaving, one.arriving)
+        first, second = (_edge(edge, folder) for edge in (one.first, one.second))
+        return between(first, second, one.leaving, one.arriving)
     except InputError as error:
         raise InputError(f"{given[0]}: {error}", error.code, error.where) from error
 

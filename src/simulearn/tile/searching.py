@@ -2,8 +2,7 @@
 
 What the engine gets wrong hardly changes from a design to its neighbours. So the search is for
 targets that are moved by what finite elements found out about the last design, and ends with
-another check. Where the module lies is free: targets are seen from the place that fits the last
-answer best.
+another check. Where the module lies is free.
 """
 
 import hashlib
@@ -33,10 +32,8 @@ from simulearn.tile.starting import start
 
 Array = NDArray[np.float64]
 
-VERSION = 2  # raise it when a search answers differently, so that older answers are not taken
+VERSION = 3  # raise it when a search answers differently, so that older answers are not taken
 GOOD = 0.05  # mm by the engine, where a search ends
-POSES = 4  # times that the place is fitted again
-STILL = 0.02  # mm that targets move by a place that is as good as the last
 CORRECTED = 0.15  # mm by finite elements, above which the search may go on from a check
 WORTH = 0.3  # of the error, that the engine must be off by for that
 TRIES = 3  # starts where an answer is not near
@@ -189,47 +186,22 @@ class _Search:
         return Space.of(grid, Free(ratio=self.job.ratio), self.engine.training)
 
     def _nearer(self, space: Space, x: Array, a: Array, shift: Array) -> Scored:
-        """Return the best design nearby, whose place is fitted again and again."""
-        best: Scored | None = None
-        place = None
-        for _ in range(POSES):
-            if place is None:
-                designs = space.designs(x[None], a[None])
-                points = places(self.engine, Goals.centres(self.targets))(designs)[0]
-                if not np.isfinite(points).all():
-                    flat = np.c_[space.designs(x[None], a[None]).flat[0], np.zeros(len(points))]
-                    points = flat + shift
-                place = Place.fitting(points - shift, self.targets)
-            seen = place.back(self.targets) + shift
-            found = self._descended(space, Goals.of(_centres(seen), seen, self.weights), x, a)
-            place, error = self._fitted(found.points - shift)
-            found = replace(found, error=error)
-            if best is None or found.error < best.error:
-                best = found
-            moved = np.linalg.norm(place.back(self.targets) + shift - seen, axis=1).max()
-            if moved < STILL or best.error < GOOD or monotonic() > self.until:
-                break
-            x, a = found.x, found.a
-        assert best is not None
-        return best
-
-    def _descended(self, space: Space, goals: Goals, x: Array, a: Array) -> Scored:
-        """Return the best design for targets in a fixed place."""
-        problem = Problem(
-            space,
-            goals,
-            places(self.engine, goals),
-            model=self.engine.bundle.model,
-            until=self.until,
-        )
-        whole = space.nearest(x, a)
-        begin = problem.best = problem.scored(x, whole)
+        """Return the best design near a point, wherever it is put."""
+        centres = Goals.of(Goals.centres(self.targets).vertices, self.targets, self.weights)
+        free = Goals.together(centres.parts, pose=Place()).shifted(shift)
+        simulated = places(self.engine, free)
+        points = simulated(space.designs(x[None], a[None]))[0]
+        if not np.isfinite(points).all():  # as flat as it is printed
+            points = np.c_[space.designs(x[None], a[None]).flat[0], np.zeros(len(points))]
+        model = self.engine.bundle.model
+        problem = Problem(space, free.begun(points), simulated, model=model, until=self.until)
+        problem.best = problem.scored(x, space.nearest(x, a))
         try:
             steps = list(relaxed(problem, x, a))
-            snapped = rounded(problem, *steps[-1]) if steps else None
-            begin = problem.best
-            if snapped is not None and np.isfinite(begin.error):
-                for _ in descent(problem, begin):
+            if steps:
+                rounded(problem, *steps[-1])
+            if np.isfinite(problem.best.error):
+                for _ in descent(problem, problem.best):
                     if problem.best.error < GOOD:
                         break
         except OutOfTime:
@@ -265,7 +237,3 @@ class _Search:
             by_engine,
             one.why,
         )
-
-
-def _centres(points: Array) -> Any:
-    return Goals.centres(points).vertices
