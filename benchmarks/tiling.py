@@ -33,7 +33,7 @@ def run(name: str, out: Path) -> dict[str, float]:
     modules, words = EXAMPLES[name]
     shutil.rmtree(out, ignore_errors=True)
     out.parent.mkdir(parents=True, exist_ok=True)
-    source = ROOT / "examples" / f"{name}.json"
+    source = ROOT / "examples" / "surfaces" / f"{name}.json"
     command = [sys.executable, "-m", "simulearn.cli", "tile", source, "--modules", modules]
     command += ["--printer", PRINTER, "-o", out, *words]
     before, begun = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
@@ -82,7 +82,7 @@ def main() -> None:
         )
     report = Report("tiling", "Tiling surfaces")
     report.say(
-        "Three surfaces (`examples/*.json`), modules of 2x2 cells, the default settings, print "
+        "Three surfaces (`examples/surfaces`), modules of 2x2 cells, the default settings, print "
         f"files for `{PRINTER}` and all pictures included. Every design is checked by finite "
         "elements on the fine mesh, and all figures are by them: error is the distance of joints "
         "from their targets, deviation the distance from the surface, gap the distance between "

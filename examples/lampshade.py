@@ -1,9 +1,9 @@
 """A lampshade of fifteen modules (Yang et al., SimuLearn, UIST 2020, Figure 16).
 
-The shade is a surface of revolution, wider below (lampshade.json). Five columns go around it, three
-modules to a column. Modules that are alike are designed once: three. The same by one command:
+The shade is a surface of revolution, wider below (surfaces/lampshade.json). Five columns go around
+it, three modules to a column. Modules that are alike are designed once: three. By one command:
 
-    simulearn tile examples/lampshade.json --modules 5x3 -o out/lampshade
+    simulearn tile examples/surfaces/lampshade.json --modules 5x3 -o out/lampshade
 
     python examples/lampshade.py [-o out/lampshade] [--engine learned]
 """
@@ -16,7 +16,7 @@ from simulearn.show.tiling import deviation_map
 from simulearn.tile import Settings, Tiled, read_tiling, tile
 from simulearn.tile.pieces import pieces
 
-SURFACE = Path(__file__).with_suffix(".json")
+SURFACE = Path(__file__).parent / "surfaces" / "lampshade.json"
 
 
 def main(words: list[str] | None = None) -> Tiled:
