@@ -22,6 +22,7 @@ PAGES: dict[str, str | list[str]] = {
     "material": "simulearn.material",
     "simulate": "simulearn.simulate",
     "inverse": "simulearn.inverse",
+    "tile": "simulearn.tile",
     "fabricate": "simulearn.fabricate",
     "drawings": [
         "simulearn.drawings.importing.imported",

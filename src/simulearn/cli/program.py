@@ -30,6 +30,7 @@ from simulearn.cli import (  # noqa: F401  (they add their commands)
     learn,
     simulate,
     studio,
+    tile,
 )
 from simulearn.cli.base import app, err
 from simulearn.errors import CancelledError, ComputationError, InputError

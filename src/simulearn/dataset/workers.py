@@ -1,4 +1,4 @@
-"""Who computes trials: processes of this machine, or a Dask cluster. One thread for each trial.
+"""Who computes trials and the like: processes of this machine, or a Dask cluster; one thread each.
 
 A worker that dies or hangs is replaced and only its own trial is lost. Workers answer with bytes
 and never write files, so a cluster needs no common disk.
@@ -19,13 +19,15 @@ from time import monotonic, sleep
 from typing import Any
 
 from simulearn import __version__
-from simulearn.dataset.trial import SOLVER_VERSION, TrialJob, TrialOutcome, run
+from simulearn.dataset.trial import SOLVER_VERSION, run
 from simulearn.errors import ComputationError, InputError
 from simulearn.extras import require
 
 LONGEST = 900.0  # s; a trial takes seconds, and a minute where kernels are compiled
 ANSWERING = 10.0  # s that a scheduler may take to answer at first
 WAITING = 30.0  # s that a cluster may be without workers
+
+Work = Callable[[Any], Any]  # job -> answer, both of plain data that travels
 
 _starting = threading.Lock()
 
@@ -35,21 +37,27 @@ class Workers:
     """Workers that are ready.
 
     Attributes:
-        submit: give a job to them; the future brings its answer.
+        submit: give a job to them, a trial or another that they were made for; the future brings
+            its answer.
         count: how many there are now.
         check: called while no answer comes; raises ComputationError where none will come.
     """
 
-    submit: Callable[[TrialJob], "Future[TrialOutcome]"]
+    submit: Callable[[Any], "Future[Any]"]
     count: Callable[[], int]
     check: Callable[[], None] = lambda: None
 
 
 @contextmanager
-def local_workers(processes: int, longest: float = LONGEST) -> Iterator[Workers]:
-    """Yield processes of this machine; a trial that takes too long (s) is given up.
+def local_workers(processes: int, longest: float = LONGEST, work: Work = run) -> Iterator[Workers]:
+    """Yield processes of this machine.
 
     They do not run the caller's script again, as new processes do in Python: it needs no guard.
+
+    Args:
+        processes: how many.
+        longest: s; a job that takes longer is given up.
+        work: what they do with a job: trials, or a function of another module.
 
     Raises:
         ComputationError: no process can be started.
@@ -64,9 +72,9 @@ def local_workers(processes: int, longest: float = LONGEST) -> Iterator[Workers]
     except OSError as error:
         raise _not_started(error.strerror or str(error)) from error
 
-    def submit(job: TrialJob) -> "Future[TrialOutcome]":
+    def submit(job: Any) -> "Future[Any]":
         try:
-            return pool.schedule(run, args=(job,), timeout=longest)
+            return pool.schedule(work, args=(job,), timeout=longest)
         except RuntimeError as error:  # the pool has given up
             raise _not_started("they end as soon as they begin") from error
 
@@ -114,12 +122,13 @@ def _without_script() -> Iterator[None]:
 
 
 @contextmanager
-def cluster_workers(address: str, waiting: float = WAITING) -> Iterator[Workers]:
+def cluster_workers(address: str, waiting: float = WAITING, work: Work = run) -> Iterator[Workers]:
     """Yield the workers of a Dask cluster.
 
     Args:
         address: of its scheduler, as tcp://host:8786.
         waiting: s that it may be without workers.
+        work: what they do with a job; see `local_workers`.
 
     Raises:
         InputError: nobody answers there, or Dask is not installed.
@@ -135,7 +144,7 @@ def cluster_workers(address: str, waiting: float = WAITING) -> Iterator[Workers]
         raise InputError(
             f"{address}: no Dask scheduler answers there; an address is as tcp://host:8786"
         ) from error
-    team = _Cluster(client, address, waiting)
+    team = _Cluster(client, address, waiting, work)
     try:
         team.begin()
         yield Workers(team.submit, team.count, team.check)
@@ -161,10 +170,12 @@ class _Cluster:
         client: of its scheduler.
         address: for messages.
         waiting: s that it may be without workers.
+        work: what they do with a job.
     """
 
-    def __init__(self, client: Any, address: str, waiting: float) -> None:
+    def __init__(self, client: Any, address: str, waiting: float, work: Work) -> None:
         self._client, self._address, self._waiting = client, address, waiting
+        self._work = work
         self._executor = client.get_executor(pure=False)
         self._last = monotonic()  # when there was a worker
 
@@ -184,9 +195,9 @@ class _Cluster:
                     hint="install the same version on all of them",
                 )
 
-    def submit(self, job: TrialJob) -> "Future[TrialOutcome]":
+    def submit(self, job: Any) -> "Future[Any]":
         """Give a job to a worker."""
-        future: Future[TrialOutcome] = self._asked(lambda: self._executor.submit(run, job))
+        future: Future[Any] = self._asked(lambda: self._executor.submit(self._work, job))
         return future
 
     def count(self) -> int:

@@ -1,0 +1,89 @@
+"""Quad meshes: read, turned alike, smooth between their corners, joints shared."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from simulearn.errors import InputError
+from simulearn.tile import from_quads, read_tiling
+from simulearn.tile.quadfile import read_quads
+
+FLAT = [[0, 0, 0], [90, 0, 0], [180, 0, 0], [0, 90, 0], [90, 90, 0], [180, 90, 0]]
+PAIR = [[0, 1, 4, 3], [1, 2, 5, 4]]
+
+
+def obj(path, vertices, faces):
+    lines = ["v {} {} {}".format(*v) for v in vertices]
+    lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def test_each_quad_is_a_module_and_neighbours_share_joints(tmp_path):
+    tiling = read_tiling(obj(tmp_path / "two.obj", FLAT, PAIR))
+    assert tiling.modules.shape == (2, 9)
+    assert len(tiling.points) == 15
+    assert tiling.touching == ((0, 1),)
+    np.testing.assert_allclose(tiling.points[:, 2], 0, atol=1e-12)
+    np.testing.assert_allclose(tiling.targets[0, 4], [45, 45, 0], atol=1e-9)
+    finer = from_quads(np.array(FLAT, float), np.array(PAIR), (3, 3))
+    assert len(finer.points) == 2 * 16 - 4
+
+
+def test_quads_that_are_turned_over_are_turned_back_and_it_is_said():
+    tiling = from_quads(np.array(FLAT, float), np.array([PAIR[0], PAIR[1][::-1]]))
+    assert (tiling.normals[:, 2] > 0.99).all()
+    assert [message.code for message in tiling.warnings] == ["quads-turned"]
+    assert len(tiling.points) == 15
+
+
+def test_between_corners_on_a_sphere_the_surface_is_nearly_the_sphere():
+    angles = np.radians([-50, -25, 0, 25, 50])
+    x, y = np.meshgrid(np.tan(angles), np.tan(angles))
+    points = np.stack([x, y, np.ones_like(x)], axis=-1).reshape(-1, 3)
+    points = 200 * points / np.linalg.norm(points, axis=1, keepdims=True)
+    k = np.arange(25).reshape(5, 5)
+    quads = np.stack([k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]], axis=-1).reshape(-1, 4)
+    tiling = from_quads(points, quads)
+    inner = tiling.modules[[5, 6, 9, 10]]  # normals at the rim are of one side only
+    radius = np.linalg.norm(tiling.points[inner], axis=-1)
+    chords = np.linalg.norm(points[quads[5]].mean(axis=0))
+    assert np.abs(radius - 200).max() < 0.15 * (200 - chords)
+
+
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian", "binary_big_endian"])
+def test_ply_is_read_in_its_forms(tmp_path, form):
+    head = (
+        f"ply\nformat {form} 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    if form == "ascii":
+        rows = [*FLAT, *([4, *face] for face in PAIR)]
+        body = "\n".join(" ".join(map(str, row)) for row in rows).encode()
+    else:
+        order = "<" if "little" in form else ">"
+        body = b"".join(struct.pack(order + "3f", *v) for v in FLAT)
+        body += b"".join(struct.pack(order + "B4i", 4, *face) for face in PAIR)
+    path = tmp_path / "two.ply"
+    path.write_bytes(head.encode() + body)
+    vertices, quads = read_quads(path)
+    np.testing.assert_allclose(vertices[quads[1]], np.array(FLAT)[PAIR[1]])
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("v 0 0 0\nf 1 2 3 4\n", "is damaged, or no mesh file"),
+        ("v 0 0 zero\n", "is damaged, or no mesh file"),
+        ("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\n", "1 quads and 1 other faces"),
+        ("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n", "quad 1 has no area"),
+    ],
+)
+def test_what_is_no_quad_mesh_is_one_line(tmp_path, text, words):
+    path = tmp_path / "wrong.obj"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError) as error:
+        read_tiling(path)
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
