@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 
 from simulearn.errors import Cancel, stop_if
 from simulearn.grid import Grid
+from simulearn.inverse.archive import Archive
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.scoring import Places
 from simulearn.inverse.space import Space
+from simulearn.learn.common.model import Designs
 
 Array = NDArray[np.float64]
 
@@ -68,6 +70,8 @@ class Problem:
         cancel: stops the search.
         best: so far.
         designs: how many were scored.
+        archive: keeps the best of each kind, where several answers are wanted.
+        allowed: which designs may be scored at all, besides that they are valid.
     """
 
     space: Space
@@ -80,6 +84,8 @@ class Problem:
     cancel: Cancel | None = None
     best: Scored | None = None
     designs: int = field(default=0)
+    archive: Archive | None = None
+    allowed: Callable[[Designs], NDArray[np.bool_]] | None = None
 
     def points(self, x: Array, a: Array) -> Array:
         """Return where the vertices of points (T, P), (T, Q) come to: (T, G, 3) mm.
@@ -92,8 +98,13 @@ class Problem:
         self.going()
         points = np.full((len(x), len(self.goals), 3), np.nan)
         valid = np.flatnonzero(self.space.valid(x, a))
+        if self.allowed is not None:
+            valid = valid[self.allowed(self.space.designs(x[valid], a[valid]))]
         if len(valid):
-            points[valid] = self.places(self.space.designs(x[valid], a[valid]))
+            designs = self.space.designs(x[valid], a[valid])
+            points[valid] = self.places(designs)
+            if self.archive is not None:
+                self.archive.add(designs.flat, designs.actuators, self.error(points[valid]))
         self.designs += len(valid)
         errors = self.error(points)
         k = int(errors.argmin()) if len(errors) else 0

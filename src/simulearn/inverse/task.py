@@ -26,6 +26,8 @@ from simulearn.inverse.goals import Goals, Vertex
 from simulearn.material import Material
 
 SCHEMA = "simulearn.task/1"
+MOST_ANSWERS = 20
+MORE = 2.0  # limits of seconds, that other answers may take after the first
 
 Index = Annotated[int, BeforeValidator(whole), Field(ge=0, lt=2**31)]
 Pair = Annotated[list[Index], Field(min_length=2, max_length=2)]
@@ -44,11 +46,11 @@ class _Part(BaseModel):
 
     @model_serializer(mode="wrap")
     def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out what is not asked of prints, so that files without it stay as they were."""
+        """Leave out what is not wanted of prints or answers; files without it stay as they were."""
         return {
             key: value
             for key, value in write(self).items()
-            if (key, value) not in (("tolerance", None), ("robust", False))
+            if (key, value) not in (("tolerance", None), ("robust", False), ("answers", 1))
         }
 
 
@@ -109,11 +111,18 @@ class Limits(_Part):
         seconds: of getting ready, searching and checking; only the first check may take up to a
             quarter more, and compiling once on a machine longer than half of it.
         corrections: how often to go on from targets corrected by FEA.
+        answers: how many designs that differ are wanted; several take up to three times the seconds.
     """
 
     iterations: Annotated[int, Field(ge=1)] = 1000
     seconds: Positive = 30.0
     corrections: Annotated[int, Field(ge=0)] = 2
+    answers: Annotated[int, Field(ge=1, le=MOST_ANSWERS)] = 1
+
+    @property
+    def seconds_in_all(self) -> float:
+        """That a search may take for all answers."""
+        return self.seconds if self.answers == 1 else (1 + MORE) * self.seconds
 
 
 class Task(_Part):
@@ -199,10 +208,11 @@ KEYS = {
     "flip": 'flip is "x", "y", "xy" or "none"',
     "method": "a method is a name",
     "engine": "an engine is a name",
-    "limits": "limits are an object with iterations, seconds and corrections",
+    "limits": "limits are an object with iterations, seconds, corrections and answers",
     "iterations": "iterations are an integer of at least 1",
     "seconds": "seconds are a number more than 0",
     "corrections": "corrections are an integer of at least 0",
+    "answers": f"answers are an integer from 1 to {MOST_ANSWERS}",
 }
 PLACES: dict[str, type[BaseModel]] = {
     "goals": Goal,
