@@ -33,7 +33,7 @@ from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import ANSWERS
 from simulearn.inverse.prints import probability_of
 from simulearn.inverse.probability import Probability
-from simulearn.inverse.problem import OutOfTime, Scored, Until, drawing
+from simulearn.inverse.problem import OutOfTime, Problem, Scored, Until
 from simulearn.inverse.space import Space
 from simulearn.learn.common.model import Designs
 from simulearn.material import load_material
@@ -48,6 +48,7 @@ PRINTER = "prusa-mk4"  # whose print times are told where no printer is named
 SLACK = 0.015  # of the dimension, by which another answer may be worse than the best
 OFF = 2.0  # least distances, by which ratios drawn anew stay away from what is there
 BEGINNINGS = 4
+DRAWS = 5  # of ratios, until a design has an answer
 LATE = "the time was over before it was checked"
 SHARE = 0.5  # of the time that the first answer took, for all new beginnings together
 
@@ -91,6 +92,7 @@ class _Several:
     ) -> None:
         self.search, self.space, self.goals, self.best = search, space, goals, best
         self.archive, self.limits = archive, search.task.limits
+        # Up to this error by the engine, a design may be an answer.
         self.good = best.error_mm + SLACK * space.grid.dimension
         self.first = search.seconds
         self.deadline = monotonic() + self.limits.seconds_in_all - self.first
@@ -120,19 +122,14 @@ class _Several:
 
     def _from_another(self, until: float) -> None:
         """Search from another beginning, and note what it came to."""
-        search, source = self.search, drawing(len(self.search.steps))
+        search = self.search
+        space, words, far = self.space, "ratios drawn anew", OFF
         if self.begun_again % 2:
-            space, words = self._with_less()
-            allowed = None
-            x, a = space.start
-        else:
-            space, words, allowed = self.space, "ratios drawn anew", self._elsewhere()
-            x, a = space.start
-            a = space.nearest(x, 2 * source.random(len(a)) - 1)
+            space, words, far = *self._with_less(), 1.0
         problem = search.problem(space, self.goals, until)
-        problem.allowed = allowed
         try:
-            start = problem.scored(x, a)
+            start = self._start(problem)
+            problem.allowed, problem.best = self._elsewhere(far), None
             for _ in search.method(problem, start):
                 problem.going()
         except OutOfTime:
@@ -142,13 +139,28 @@ class _Several:
         if problem.best is not None:
             self._note(space, problem.best, problem.designs, words)
 
-    def _elsewhere(self) -> Callable[[Designs], NDArray[np.bool_]]:
-        """Return which designs are far from the best one and from what new beginnings came to."""
+    def _start(self, problem: Problem) -> Scored:
+        """Return a design to begin with: that of a space with less, or one with other ratios."""
+        x, a = problem.space.start
+        if problem.space is self.space:
+            for _ in range(DRAWS):
+                drawn = problem.space.nearest(x, 2 * problem.source.random(len(a)) - 1)
+                start = problem.scored(x, drawn)
+                if np.isfinite(start.error):
+                    return start
+        return problem.scored(x, a)
+
+    def _elsewhere(self, far: float) -> Callable[[Designs], NDArray[np.bool_]]:
+        """Return which designs are far from the best one and from what new beginnings came to.
+
+        Args:
+            far: how many times the least distance.
+        """
         steps = [step for step in self.search.steps if step.phase == ANSWERS]
         there = [self.best.grid.centred, *(step.grid(self.space.grid) for step in steps)]
         joints = np.array([grid.joints for grid in there])
         ratios = np.array([grid.actuators for grid in there])
-        least, distance = OFF * self.archive.least, self.archive.distance
+        least, distance = far * self.archive.least, self.archive.distance
 
         def elsewhere(designs: Designs) -> NDArray[np.bool_]:
             away = distance(designs.flat, designs.actuators, joints, ratios)
@@ -243,9 +255,9 @@ class _Several:
         if of_prints is not None:
             rest = answers[1:]
             prints[1:] = [probability_of(search, a.check, self.goals, warnings) for a in rest]
-        times = print_seconds([one.grid for one in answers], search.printer, warnings)
+        name, times = print_times([one.grid for one in answers], search.printer, warnings)
         answers = on_front(
-            replace(one, probability=share, print_seconds=time)
+            replace(one, probability=share, printer=name, print_seconds=time)
             for one, share, time in zip(answers, prints, times, strict=True)
         )
         best = answers[0]
@@ -271,10 +283,12 @@ class _Several:
         return on_front(answers)
 
 
-def print_seconds(
+def print_times(
     grids: Sequence[Grid], printer: Printer | str | None, warnings: list[Message]
-) -> list[float | None]:
-    """Return how long grids take to print, without heating; None where the printer cannot.
+) -> tuple[str, list[float | None]]:
+    """Return the name of a printer, and how long (s) it prints each grid, heating not counted.
+
+    None stands for what it cannot print.
 
     Args:
         grids: each printed alone.
@@ -295,7 +309,7 @@ def print_seconds(
             text = f"how long an answer takes to print is not known: {error}"
             why = Message("answers-print", "printer", text)
             warnings += [] if why in warnings else [why]
-    return times
+    return machine.name, times
 
 
 class _Either:

@@ -22,11 +22,12 @@ def search_figures(task: Task, result: SearchResult) -> dict[str, Any]:
         "start_mm": result.steps[0].error_mm,
         "designs": result.designs,
         "iterations": result.iterations,
-        "corrections": max(step.phase for step in result.steps),
+        "corrections": max(0, *(step.phase for step in result.steps)),
         "seconds": round(result.seconds, 3),
         "interrupted": result.interrupted,
         "warnings": [asdict(message) for message in result.warnings],
         **_of_prints(result),
+        **({"answers": [one.to_dict() for one in result.answers]} if result.answers else {}),
         "goals": [
             {"vertex": vertex, "distance_mm": distance}
             for vertex, distance in _distances(task, result)

@@ -19,8 +19,6 @@ from simulearn.material import load_material
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-SCHEMA = "simulearn.answers/1"
-
 
 @dataclass(frozen=True, eq=False)
 class Answer:
@@ -31,7 +29,8 @@ class Answer:
         actuators: how many beams have one.
         actuator_mm: length of them all.
         nearest: distance from the nearest other answer, as `archive` has it; None if it is alone.
-        print_seconds: that it takes to print, without heating; None where that is not known.
+        printer: by whose profile it is printed.
+        print_seconds: that this takes, without heating; None where it is not known.
         probability: how often prints of it meet the goals, where the task asks anything of prints.
         on_front: whether no other answer is as good in everything and better in something.
     """
@@ -40,6 +39,7 @@ class Answer:
     actuators: int
     actuator_mm: float
     nearest: float | None
+    printer: str = ""
     print_seconds: float | None = None
     probability: Probability | None = None
     on_front: bool = True
@@ -56,15 +56,29 @@ class Answer:
         return check.error_mm if check.error_fea_mm is None else check.error_fea_mm
 
     @property
+    def share(self) -> float | None:
+        """Of prints that are within all tolerances; None where that is not known."""
+        return None if self.probability is None else self.probability.together
+
+    @property
     def costs(self) -> tuple[float, float, float, float]:
         """What of two answers the better one has less of; infinite where it is not known."""
-        share = None if self.probability is None else self.probability.together
         return (
             self.error,
-            np.inf if share is None else 1 - share,
+            np.inf if self.share is None else 1 - self.share,
             self.actuator_mm,
             np.inf if self.print_seconds is None else self.print_seconds,
         )
+
+    @property
+    def words(self) -> str:
+        """What it takes, in a line."""
+        parts = [f"{self.actuators} actuators of {self.actuator_mm:.0f} mm in all"]
+        if self.print_seconds is not None:
+            parts.append(f"printed in {self.print_seconds / 60:.0f} min")
+        if self.share is not None:
+            parts.append(f"{100 * self.share:.0f} % of prints within tolerance")
+        return ", ".join(parts)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain data: lengths in mm, times in s."""
@@ -76,7 +90,7 @@ class Answer:
             "apart_mm": check.apart_mm,
             "actuators": self.actuators,
             "actuator_mm": round(self.actuator_mm, 3),
-            "print_seconds": self.print_seconds,
+            "print_seconds": self.print_seconds and round(self.print_seconds, 1),
             "nearest": None if self.nearest is None else round(self.nearest, 4),
             "on_front": self.on_front,
             **({} if prints is None else {"probability": prints.to_dict()}),

@@ -111,7 +111,7 @@ class Limits(_Part):
         seconds: of getting ready, searching and checking; only the first check may take up to a
             quarter more, and compiling once on a machine longer than half of it.
         corrections: how often to go on from targets corrected by FEA.
-        answers: how many designs that differ are wanted; several take up to three times the seconds.
+        answers: how many designs that differ are wanted; several take up to thrice the seconds.
     """
 
     iterations: Annotated[int, Field(ge=1)] = 1000
