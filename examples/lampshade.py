@@ -15,7 +15,8 @@ import numpy as np
 
 from simulearn.grid import grid_to_dict, make, write_grid
 from simulearn.inverse import SearchResult, Task, optimize, task_from_dict, write_task
-from simulearn.show.assembly import Place, assembly
+from simulearn.rigid import Place
+from simulearn.show.assembly import assembly
 
 MODULES = ("top", "middle", "bottom")
 AROUND = 5  # columns

@@ -16,7 +16,8 @@ import numpy as np
 
 from simulearn.grid import grid_to_dict, make
 from simulearn.inverse import Task, rank, task_from_dict, write_task
-from simulearn.show.assembly import Place, assembly
+from simulearn.rigid import Place
+from simulearn.show.assembly import assembly
 from simulearn.show.inverse import cards
 from simulearn.simulate import Result, engine, one, results
 

@@ -13,7 +13,7 @@ from simulearn.grid import Grid, grid_to_dict, make
 from simulearn.inverse import Space, optimize, rank, robust, search, task_from_dict
 from simulearn.inverse.keeping import ROBUST, identity, read_past, write_past
 from simulearn.inverse.probability import probability
-from simulearn.inverse.robust import repeated, robust_problem
+from simulearn.inverse.robust import robust_problem
 from simulearn.inverse.task import Free, task_to_dict
 from simulearn.material import Scatter, load_material
 from simulearn.material.material import HERE
@@ -174,7 +174,7 @@ def test_all_goals_together_are_met_less_often_than_each(fragile):
 def test_the_expected_error_is_the_error_of_repeated_goals(fragile):
     task = task_from_dict(fragile)
     goals, grid = task.aims, task.start
-    many = repeated(goals, 3)
+    many = goals.repeated(3)
     assert (len(many), many.weights.sum()) == (3, pytest.approx(1.0))
     space = Space.of(grid, Free())
     problem = robust_problem(space, goals, grid, None, None, np.inf, None, None)

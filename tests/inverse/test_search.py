@@ -10,7 +10,7 @@ from toys import alone, toy
 
 from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.grid import Rules, draw_valid, grid_to_dict, make
-from simulearn.inverse import Past, optimize, search, task_from_dict
+from simulearn.inverse import Goals, Past, optimize, search, task_from_dict
 from simulearn.inverse.keeping import identity, read_past, write_past
 from simulearn.inverse.reach import out_of_reach
 from simulearn.material import load_material
@@ -271,7 +271,9 @@ def test_a_start_without_an_answer_is_an_error(task):
 )
 def test_targets_out_of_reach_are_named(task, engines, scale, code):
     goals = task.aims
-    messages = out_of_reach(task.start, dataclasses.replace(goals, targets=scale * goals.targets))
+    messages = out_of_reach(
+        task.start, Goals.of(goals.vertices, scale * goals.targets, goals.weights)
+    )
     assert {message.code for message in messages} == ({code} if code else set())
     told = optimize(task).warnings
     assert told[:-1] == tuple(out_of_reach(task.start, goals))

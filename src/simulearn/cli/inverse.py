@@ -154,14 +154,14 @@ def optimize(
     try:
         names = search_pictures(wanted, result, folder, model)
         if result.answers:
-            names += answers_picture(wanted, result.answers, folder, model)
+            names += answers_picture(wanted, result, folder, model)
     except (ComputationError, InputError) as error:  # the search itself has succeeded
         names = []
         err.print(f"[yellow]the pictures could not be drawn:[/] {escape(str(error))}")
     if as_json:
         print(json.dumps(figures, allow_nan=False))
         return
-    for line in search_words(figures, result, wanted.aims.vertices):
+    for line in search_words(figures, result):
         out.print(line)
     if result.answers:
         out.print(answers_table(result.answers))
@@ -240,7 +240,7 @@ def rank(
             outcomes = simulator.simulate([suggestion.grid for suggestion in ranking.best])
             drawn = [k for k, outcome in enumerate(outcomes) if isinstance(outcome, Result)]
             shown = replace(ranking, best=tuple(ranking.best[k] for k in drawn))
-            picture = cards(shown, [one(outcomes[k]) for k in drawn], task.aims if task else None)
+            picture = cards(shown, [one(outcomes[k]) for k in drawn], ranking.goals)
             with replacing(path) as temporary:
                 picture.savefig(temporary)
     if as_json:

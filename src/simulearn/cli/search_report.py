@@ -1,7 +1,7 @@
 """Reports of searches and rankings: words, tables and pictures for people, figures for machines."""
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from importlib.util import find_spec
@@ -19,19 +19,38 @@ from simulearn.inverse.keeping import ANSWERS, ROBUST
 from simulearn.simulate.summary import remarks
 
 if TYPE_CHECKING:
-    from simulearn.inverse import Answer, Ranking, SearchResult, Step, Suggestion, Task, Vertex
+    from simulearn.inverse import Answer, Ranking, SearchResult, Step, Suggestion, Task
     from simulearn.inverse.probability import Probability
     from simulearn.inverse.search import Progress
 
 BARS = "▁▂▃▄▅▆▇█"
 
 
-def search_words(
-    figures: dict[str, Any], result: "SearchResult", goals: "Sequence[Vertex]"
-) -> Iterator[str]:
+def search_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
     """Yield what a person wants to know."""
     yield from _design_words(figures, result)
-    yield from _print_words(result, goals)
+    yield from _goal_words(figures)
+    yield from _print_words(result)
+
+
+def _goal_words(figures: dict[str, Any]) -> Iterator[str]:
+    """Yield how far goals of each kind are from being met, where not all are points."""
+    kinds = dict.fromkeys(goal["kind"] for goal in figures["goals"])
+    for kind in kinds if {*kinds} != {"point"} else ():
+        goals = [goal for goal in figures["goals"] if goal["kind"] == kind]
+        away = [goal["distance_mm"] for goal in goals]
+        angles = [goal["angle_deg"] for goal in goals if "angle_deg" in goal]
+        many = f"{len(goals)} goals" if len(goals) > 1 else goals[0]["vertex"]
+        words = f"  {kind} ({many}): "
+        if len(away) > 1:
+            words += (
+                f"{sorted(away)[len(away) // 2]:.2f} mm in the median, {max(away):.2f} mm at most"
+            )
+        else:
+            words += f"{away[0]:.2f} mm"
+        if angles:
+            words += f", {max(angles):.1f} degrees" + (" at most" if len(angles) > 1 else "")
+        yield words
 
 
 def _design_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
@@ -59,7 +78,7 @@ def _design_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[s
         )
 
 
-def _print_words(result: "SearchResult", goals: "Sequence[Vertex]") -> Iterator[str]:
+def _print_words(result: "SearchResult") -> Iterator[str]:
     """Yield how often prints meet the goals, where that was computed."""
     told, before = result.probability, result.nominal
     if told is None:
@@ -71,9 +90,10 @@ def _print_words(result: "SearchResult", goals: "Sequence[Vertex]") -> Iterator[
         )
     elif before is not None:
         yield f"of the best design without regard to prints: {before.words}"
-    for k, (vertex, share, most) in enumerate(zip(goals, told.goals, told.tolerances, strict=True)):
+    rows = zip(result.goals.names, told.goals, told.tolerances, strict=True)
+    for k, (name, share, most) in enumerate(rows):
         if share is not None:
-            yield f"  goal {k} ({vertex}): {100 * share:.0f} % within {most:g} mm"
+            yield f"  goal {k} ({name}): {100 * share:.0f} % within {most:g} mm"
 
 
 def search_pictures(
@@ -91,7 +111,7 @@ def search_pictures(
     from simulearn.simulate import Result
     from simulearn.simulate import engine as engine_of
 
-    check = result.check
+    check, goals = result.check, result.goals
     names = ["error.png"]
     with replacing(folder / "error.png") as temporary:
         error_curve(result.steps, check.error_fea_mm if check else None).savefig(temporary)
@@ -105,17 +125,17 @@ def search_pictures(
     if shape is None and isinstance(outcomes[-1], Result):
         shape = outcomes[-1]
     if shape is not None:
-        error = task.aims.error(task.aims.points(shape.joints[-1], shape.beams[-1]))
+        error = goals.error(goals.points(shape.joints[-1], shape.beams[-1]))
         with replacing(folder / "shape.png") as temporary:
-            wanted(shape, task.aims, float(error)).savefig(temporary)
+            wanted(shape, goals, float(error)).savefig(temporary)
         names.append("shape.png")
         if find_spec("rhino3dm") is not None:
-            write_3dm(shape, folder / "shape.3dm", task.aims)
+            write_3dm(shape, folder / "shape.3dm", goals)
             names.append("shape.3dm")
     pairs = [(r, step) for r, step in zip(outcomes, steps, strict=True) if isinstance(r, Result)]
     if pairs:
         results, drawn = zip(*pairs, strict=True)
-        changing(results, drawn, task.aims, folder / "changing.gif")
+        changing(results, drawn, goals, folder / "changing.gif")
         names.append("changing.gif")
     return names
 
@@ -164,13 +184,14 @@ def answer_files(answers: "Sequence[Answer]", folder: Path) -> list[str]:
 
 
 def answers_picture(
-    task: "Task", answers: "Sequence[Answer]", folder: Path, model: str | None
+    task: "Task", result: "SearchResult", folder: Path, model: str | None
 ) -> list[str]:
     """Draw the answers as cards, and the front; return the name of the file."""
     from simulearn.show.answers import answers_figure
     from simulearn.simulate import Result
     from simulearn.simulate import engine as engine_of
 
+    answers = result.answers
     known = [one.check.shape for one in answers]
     quick = task.engine in ("learned", "beams")
     simulator = engine_of(task.engine, model) if quick else engine_of("beams")
@@ -179,7 +200,7 @@ def answers_picture(
     shapes = [shape or next(outcomes) for shape in known]
     drawn = [shape if isinstance(shape, Result) else None for shape in shapes]
     with replacing(folder / "answers.png") as temporary:
-        answers_figure(answers, drawn, task.aims).savefig(temporary)
+        answers_figure(answers, drawn, result.goals).savefig(temporary)
     return ["answers.png"]
 
 

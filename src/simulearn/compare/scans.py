@@ -4,7 +4,6 @@ The formats are read by Trimesh. A mesh of millions of triangles says no more ab
 points on it, so it is sampled evenly by area, the same each time.
 """
 
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +11,9 @@ import numpy as np
 
 from simulearn.compare.measurement import Numbers, Scan
 from simulearn.errors import InputError, Message
-from simulearn.files import MOST_BYTES
+from simulearn.surfaces.meshfile import FORMATS, contents, loaded
 
 SAMPLES = 160_000  # points on a mesh, or kept of a cloud
-FORMATS = {".stl": "stl", ".ply": "ply", ".obj": "obj"}
 
 
 def read_scan(path: Path) -> Scan:
@@ -27,25 +25,10 @@ def read_scan(path: Path) -> Scan:
     Raises:
         InputError: the file cannot be read, is damaged, or holds no surface and no points.
     """
-    import trimesh
-
-    ending = FORMATS[path.suffix.lower()]
-    data = _bytes(path)
-    if data[:40].startswith(b"version https://git-lfs"):
-        raise InputError(f"{path}: is a pointer of Git LFS and no scan; `git lfs pull`", "scan")
-    more: Any = {"skip_materials": True} if ending == "obj" else {}
-    try:
-        shape: Any = trimesh.load(BytesIO(data), file_type=ending, process=False, **more)
-    except Exception as error:  # whatever a reader of foreign bytes stumbles on
-        reason = f"{type(error).__name__}: {error}"[:120]
-        raise InputError(
-            f"{path}: is damaged, or no {ending.upper()} file ({reason})", "scan", str(path)
-        ) from error
-    if isinstance(shape, trimesh.Scene):
-        shape = _joined(shape)
-    faces = getattr(shape, "faces", None)
-    if shape is None or len(getattr(shape, "vertices", ())) == 0:
+    shape = loaded(contents(path, "scan"), FORMATS[path.suffix.lower()], str(path), "scan")
+    if shape is None:
         raise InputError(f"{path}: holds no surface and no points", "scan", str(path))
+    faces = getattr(shape, "faces", None)
     vertices = np.asarray(shape.vertices, np.float64)
     if faces is not None and len(faces):
         scan = _sampled(vertices, np.asarray(faces))
@@ -97,17 +80,6 @@ def _sampled(vertices: Numbers, faces: Any) -> Scan:
     return Scan(points, across[at] / double[at, None], messages=messages)
 
 
-def _joined(scene: Any) -> Any:
-    """Return the meshes of a scene as one; else its largest cloud."""
-    import trimesh
-
-    parts = [part for part in scene.geometry.values() if len(getattr(part, "vertices", ()))]
-    meshes = [part for part in parts if isinstance(part, trimesh.Trimesh) and len(part.faces)]
-    if meshes:
-        return trimesh.util.concatenate(meshes)
-    return max(parts, key=lambda part: len(part.vertices), default=None)
-
-
 def _normals(shape: Any, count: int) -> Numbers | None:
     """Return the normals (N, 3) that a PLY cloud has, if any."""
     try:
@@ -116,18 +88,6 @@ def _normals(shape: Any, count: int) -> Numbers | None:
     except (KeyError, AttributeError, TypeError, ValueError, IndexError):
         return None
     return normals.astype(np.float64) if normals.shape == (count, 3) else None
-
-
-def _bytes(path: Path) -> bytes:
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            most = f"{MOST_BYTES / 2**20:g} MiB"
-            raise InputError(f"{path}: is too large; at most {most} can be read", "scan")
-        return path.read_bytes()
-    except FileNotFoundError as error:
-        raise InputError(f"{path}: there is no such file") from error
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror})") from error
 
 
 def _lost(lost: int, many: int, what: str) -> tuple[Message, ...]:

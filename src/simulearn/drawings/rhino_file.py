@@ -30,16 +30,8 @@ def contents(data: bytes) -> dict[str, Any]:
     Raises:
         InputError: it is no .3dm file, damaged or too large, or rhino3dm is missing.
     """
-    require("Rhino files need", "rhino3dm")
-    if not data.startswith(_BEGINNING):
-        raise InputError("this is no Rhino file: it does not begin as a .3dm file", "3dm-broken")
-    with tempfile.TemporaryDirectory() as folder:
-        source, target = Path(folder, "drawing.3dm"), Path(folder, "contents.json")
-        source.write_bytes(data)
-        _run(source, target)
-        found: dict[str, Any] = {}
-        if target.exists():
-            found = json.loads(target.read_text(encoding="utf-8"))
+    written = by_process(data, Path(__file__).with_name("rhino_process.py"))
+    found: dict[str, Any] = {} if written is None else json.loads(written)
     if "too_large" in found:
         raise InputError(
             "the drawing has too many objects or points; keep only the lines of the grid",
@@ -48,10 +40,34 @@ def contents(data: bytes) -> dict[str, Any]:
     count = len(found.get("objects", ()))
     lost = max(_objects(data) - count, 0)
     if not found or lost > count == 0:
-        raise InputError(
-            "the Rhino file is damaged; open it in Rhino, run Audit and save it anew", "3dm-broken"
-        )
+        raise damaged()
     return found | {"lost": lost}
+
+
+def damaged() -> InputError:
+    """Return the error of a file that cannot be read."""
+    text = "the Rhino file is damaged; open it in Rhino, run Audit and save it anew"
+    return InputError(text, "3dm-broken")
+
+
+def by_process(data: bytes, program: Path) -> bytes | None:
+    """Return what a program writes of a file; None where it crashes or writes nothing.
+
+    Args:
+        data: the file.
+        program: is called with the paths of the file and of what it shall write.
+
+    Raises:
+        InputError: it is no .3dm file, the program does not end, or rhino3dm is missing.
+    """
+    require("Rhino files need", "rhino3dm")
+    if not data.startswith(_BEGINNING):
+        raise InputError("this is no Rhino file: it does not begin as a .3dm file", "3dm-broken")
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder, "drawing.3dm"), Path(folder, "contents")
+        source.write_bytes(data)
+        _run(program, source, target)
+        return target.read_bytes() if target.exists() else None
 
 
 def _objects(data: bytes) -> int:
@@ -74,9 +90,8 @@ def _chunks(data: bytes, start: int, end: int, size: int) -> Iterator[tuple[int,
         start += 0 if kind & _SHORT else length
 
 
-def _run(source: Path, target: Path) -> None:
-    """Run the process; where it crashes or does not end, there is no target."""
-    program = Path(__file__).with_name("rhino_process.py")
+def _run(program: Path, source: Path, target: Path) -> None:
+    """Run the process; where it crashes, there is no target."""
     try:
         subprocess.run(
             # -P: modules that lie beside the program must not hide those of the library.

@@ -26,9 +26,9 @@ class Check:
         error_mm: of the engine's shape.
         error_fea_mm: of the shape by finite elements; None where they give no answer.
         why: why they give none.
-        apart_mm: weighted mean distance between the two, over the goals.
+        apart_mm: weighted mean distance between the two, over the goals' vertices.
         bound_mm: what the engine expects its error to stay below, where it estimates that.
-        shift: (G, 3) mm, from finite elements to the engine.
+        shift: (V, 3) mm, from finite elements to the engine.
         phase: of the search that ended with this design.
         result: by the engine; None where it has no full rollout, or in an earlier run.
         fea: by finite elements; None where they give no answer, or in an earlier run.
@@ -79,7 +79,7 @@ def check(
 
     Args:
         grid: the design.
-        points: (G, 3) mm, where the goals' vertices come to by the engine.
+        points: (V, 3) mm, where the goals' vertices come to by the engine.
         goals: what is wanted.
         simulator: the engine of the search.
         cancel: stops the check.
@@ -110,7 +110,7 @@ def check(
         known,
         fea=reference,
         error_fea_mm=float(goals.error(there)),
-        apart_mm=float(np.linalg.norm(points - there, axis=-1) @ goals.weights),
+        apart_mm=goals.apart(points, there),
         shift=points - there,
     )
 

@@ -3,6 +3,9 @@
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from simulearn.inverse.found import SearchResult
 from simulearn.inverse.task import Task
 
@@ -28,10 +31,8 @@ def search_figures(task: Task, result: SearchResult) -> dict[str, Any]:
         "warnings": [asdict(message) for message in result.warnings],
         **_of_prints(result),
         **({"answers": [one.to_dict() for one in result.answers]} if result.answers else {}),
-        "goals": [
-            {"vertex": vertex, "distance_mm": distance}
-            for vertex, distance in _distances(task, result)
-        ],
+        **_pose(result),
+        "goals": _goals(result),
         "history": [step.row() for step in result.steps],
     }
 
@@ -42,11 +43,30 @@ def _of_prints(result: SearchResult) -> dict[str, Any]:
     return {name: part.to_dict() for name, part in parts.items() if part is not None}
 
 
-def _distances(task: Task, result: SearchResult) -> list[tuple[str, float]]:
-    """Return how far each vertex is from its target, by finite elements where they answered."""
-    shape = None if result.check is None else result.check.shape
-    if shape is None:
+def _goals(result: SearchResult) -> list[dict[str, Any]]:
+    """Return how far each goal is from being met, by finite elements where they answered."""
+    points, goals = _points(result), result.goals
+    if points is None:
         return []
-    aims = task.aims
-    away = aims.distances(aims.points(shape.joints[-1], shape.beams[-1]))
-    return [(str(v), float(d)) for v, d in zip(aims.vertices, away, strict=True)]
+    rows = zip(
+        goals.names, goals.kinds, goals.distances(points), goals.degrees(points), strict=True
+    )
+    return [
+        {"vertex": name, "kind": kind, "distance_mm": float(distance)}
+        | ({} if angle is None else {"angle_deg": float(angle)})
+        for name, kind, distance, angle in rows
+    ]
+
+
+def _pose(result: SearchResult) -> dict[str, Any]:
+    """Return where the shape is placed, where that is free."""
+    points = _points(result)
+    if points is None or result.goals.pose is None:
+        return {}
+    place = result.goals.place(points)
+    return {"place": {"turn": place.turn.tolist(), "shift": place.shift.tolist()}}
+
+
+def _points(result: SearchResult) -> NDArray[np.float64] | None:
+    shape = None if result.check is None else result.check.shape
+    return None if shape is None else result.goals.points(shape.joints[-1], shape.beams[-1])

@@ -7,6 +7,7 @@ from simulearn.errors import Message
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check
 from simulearn.inverse.front import Answer
+from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import Step
 from simulearn.inverse.probability import Probability
 
@@ -22,6 +23,7 @@ class SearchResult(Displayed):
         steps: the iterations, 0 being the beginning.
         checks: by finite elements, those of earlier runs among them.
         seconds: of searching and checking.
+        goals: what was searched for.
         interrupted: whether it was stopped by the user.
         warnings: about the goals.
         probability: how often prints of it meet the goals, where the task asks anything of prints.
@@ -35,6 +37,7 @@ class SearchResult(Displayed):
     steps: tuple[Step, ...]
     checks: tuple[Check, ...]
     seconds: float
+    goals: Goals
     interrupted: bool
     warnings: tuple[Message, ...] = ()
     probability: Probability | None = None

@@ -62,12 +62,15 @@ class Answer:
 
     @property
     def costs(self) -> tuple[float, float, float, float]:
-        """What of two answers the better one has less of; infinite where it is not known."""
+        """What of two answers the better one has less of; infinite where it is not known.
+
+        In steps of .05 mm, a hundredth, mm and minutes: what differs by less is as good.
+        """
         return (
-            self.error,
-            np.inf if self.share is None else 1 - self.share,
-            self.actuator_mm,
-            np.inf if self.print_seconds is None else self.print_seconds,
+            0.05 * round(self.error / 0.05),
+            np.inf if self.share is None else 1 - round(self.share, 2),
+            round(self.actuator_mm),
+            np.inf if self.print_seconds is None else round(self.print_seconds / 60),
         )
 
     @property

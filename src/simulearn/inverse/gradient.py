@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.problem import Advance, Problem, Scored
-from simulearn.learn.common.model import Designs
+from simulearn.learn.common.model import Designs, last_frame
 from simulearn.learn.equilibrium.model import Equilibrium
 from simulearn.learn.equilibrium.prediction import TOLERANCE
 from simulearn.learn.equilibrium.slopes import Slopes, slopes
@@ -137,16 +137,21 @@ def fitting_slopes(
         tolerance: of the simulation, mm; see `learn.equilibrium.slopes`.
     """
     pick = goals.matrix(designs.flat.shape[1], len(designs.beams))
-    given = (pick, goals.targets, goals.weights, soft)
-    return slopes(model, designs, soft_error, given, tolerance)
+    last = last_frame(model, designs)
+    points = goals.points(last.joints, last.sections)
+    parts = []
+    for t in range(len(designs)):
+        error, slope = goals.slope(points[t], soft)
+        given = (pick, points[t], error, slope)
+        parts.append(slopes(model, designs.take([t]), tangent_error, given, tolerance))
+    return Slopes(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
-def soft_error(joints: Any, sections: Any, given: Any) -> Any:
-    """Return the softened weighted mean distance, as `learn.equilibrium.slopes` needs it."""
-    pick, targets, weights, soft = given
-    points = pick @ jnp.concatenate([joints.reshape(-1, 3), sections.reshape(-1, 3)])
-    away = ((points - targets) ** 2).sum(-1)
-    return weights @ (jnp.sqrt(away + soft**2) - soft)
+def tangent_error(joints: Any, sections: Any, given: Any) -> Any:
+    """Return an error that changes evenly about known points, for `learn.equilibrium.slopes`."""
+    pick, points, error, slope = given
+    moved = pick @ jnp.concatenate([joints.reshape(-1, 3), sections.reshape(-1, 3)]) - points
+    return error + (slope * moved).sum()
 
 
 def lbfgs(value: Value, z: Array, most: Array, iterations: int) -> Iterator[tuple[Array, float]]:

@@ -70,10 +70,11 @@ class Past:
 
 
 def identity(task: Task, model: str | None) -> str:
-    """Return what names a search: all of the task but its limits, and the model."""
+    """Return what names a search: all of the task but its limits, its surfaces, the model."""
     data = task_to_dict(task)
     del data["limits"]
-    text = json.dumps([data, model], sort_keys=True)
+    digest = task.shapes_digest
+    text = json.dumps([data, model, *([digest] if digest else [])], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 

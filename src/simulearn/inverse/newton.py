@@ -36,7 +36,7 @@ class Slope:
     """How vertices move with a design, to first order.
 
     Attributes:
-        joints: (N, P) per mm; N = 3 G, scaled by the roots of the weights.
+        joints: (N, P) per mm, of N residuals.
         steps: (Q, 2, N) of one step up, one step down; NaN where that is not valid.
     """
 

@@ -126,6 +126,6 @@ def _robust(
 
 
 def _points(check: Check, goals: Goals) -> NDArray[np.float64] | None:
-    """Return where the vertices of a checked design are (G, 3) mm; None in a later run."""
+    """Return where the vertices of a checked design are (V, 3) mm; None in a later run."""
     shape = check.shape
     return None if shape is None else goals.points(shape.joints[-1], shape.beams[-1])

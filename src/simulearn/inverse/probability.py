@@ -91,7 +91,7 @@ def probability(
         grid: the design, its fixed joint at the origin.
         goals: what is wanted.
         tolerances: of each goal, mm, or None.
-        known: (G, 3) mm, where the vertices of the design are by finite elements or the engine.
+        known: (V, 3) mm, where the vertices of the design are by finite elements or the engine.
         count: of the prints; as many as is quick if not given.
         engine: that simulates the design; see `simulate.scatter.prints_source`.
         progress: called with the prints done and the prints in all.
@@ -143,7 +143,7 @@ def points_of_prints(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
 ) -> Array:
-    """Return where the goals' vertices come to in each print: (T, G, 3) mm; NaN without answer."""
+    """Return where the goals' vertices come to in each print: (T, V, 3) mm; NaN without answer."""
     prints = simulate_prints(grid, draw, source, progress, cancel)
     points = goals.points(prints.joints, prints.sections)
     return np.where(prints.converged[:, None, None], points, np.nan)

@@ -46,7 +46,7 @@ class Scored:
 
     Attributes:
         x, a: its point in the space, (P,) and (Q,).
-        points: (G, 3) mm, where the goals' vertices come to.
+        points: (V, 3) mm, where the goals' vertices come to.
         error: mm.
     """
 
@@ -88,7 +88,7 @@ class Problem:
     allowed: Callable[[Designs], NDArray[np.bool_]] | None = None
 
     def points(self, x: Array, a: Array) -> Array:
-        """Return where the vertices of points (T, P), (T, Q) come to: (T, G, 3) mm.
+        """Return where the vertices of points (T, P), (T, Q) come to: (T, V, 3) mm.
 
         NaN where a design is not valid or has no answer.
 
@@ -96,7 +96,7 @@ class Problem:
             OutOfTime: before anything is computed.
         """
         self.going()
-        points = np.full((len(x), len(self.goals), 3), np.nan)
+        points = np.full((len(x), len(self.goals.vertices), 3), np.nan)
         valid = np.flatnonzero(self.space.valid(x, a))
         if self.allowed is not None:
             valid = valid[self.allowed(self.space.designs(x[valid], a[valid]))]
@@ -113,7 +113,7 @@ class Problem:
         return points
 
     def loose(self, x: Array, a: Array) -> Array:
-        """Return where vertices come to when ratios are not multiples of the step: (T, G, 3) mm.
+        """Return where vertices come to when ratios are not multiples of the step: (T, V, 3) mm.
 
         Such points are no designs, and not remembered; only learned engines answer.
 
@@ -121,7 +121,7 @@ class Problem:
             OutOfTime: before anything is computed.
         """
         self.going()
-        points = np.full((len(x), len(self.goals), 3), np.nan)
+        points = np.full((len(x), len(self.goals.vertices), 3), np.nan)
         sound = np.flatnonzero(np.isfinite(self.space.nets(x)).all(axis=1))
         if len(sound):
             points[sound] = self.places(self.space.designs(x[sound], a[sound]))
@@ -129,7 +129,7 @@ class Problem:
         return points
 
     def error(self, points: Array) -> Array:
-        """Return the errors (T,) mm of points (T, G, 3); infinite where there are none."""
+        """Return the errors (T,) mm of points (T, V, 3); infinite where there are none."""
         return np.nan_to_num(self.goals.error(points), nan=np.inf)
 
     def errors(self, x: Array, a: Array) -> Array:
@@ -175,10 +175,5 @@ def drawing(seed: int) -> np.random.Generator:
 
 
 def residual(problem: Problem, points: Array) -> Array:
-    """Return the distances (..., N) mm of points (..., G, 3) from their targets, N = 3 G.
-
-    Scaled by the roots of the weights, for least squares.
-    """
-    goals = problem.goals
-    away = (points - goals.targets) * np.sqrt(goals.weights)[:, None]
-    return away.reshape(*away.shape[:-2], -1)
+    """Return how far goals are from being met (..., N) mm at points (..., V, 3)."""
+    return problem.goals.residual(points)

@@ -38,7 +38,7 @@ class Suggestion:
         change: the modification.
         grid: the design after it.
         error_mm: predicted.
-        points: (G, 3) mm, where the goals' vertices come to.
+        points: (V, 3) mm, where the goals' vertices come to.
         moved_mm: mean distance by which it moves them.
         probability: how often prints of it meet the goals; of the best five of a task that has
             tolerances.
@@ -59,9 +59,10 @@ class Ranking(Displayed):
     Attributes:
         grid: the design as it is.
         error_mm: of it.
-        points: (G, 3) mm, where its vertices come to.
+        points: (V, 3) mm, where its vertices come to.
         suggestions: all of them.
         best: five that differ.
+        goals: what is wanted; None where a grid alone was ranked.
         probability: how often prints of the design as it is meet the goals.
         warnings: about the goals.
     """
@@ -71,6 +72,7 @@ class Ranking(Displayed):
     points: Array
     suggestions: tuple[Suggestion, ...]
     best: tuple[Suggestion, ...]
+    goals: Goals | None = None
     probability: Probability | None = None
     warnings: tuple[Message, ...] = ()
 
@@ -107,6 +109,7 @@ def rank(
         simulator = engine_of(simulator, model)
     if isinstance(design, Task):
         ranking = _ranked(design.start, design.aims, design.free, simulator, cancel)
+        ranking = replace(ranking, warnings=design.warnings)
         return _with_probabilities(ranking, design, simulator, cancel, progress)
     return _ranked(design, None, free or Free(), simulator, cancel)
 
@@ -123,6 +126,8 @@ def _ranked(
     xs = x + np.array([np.zeros_like(x), *(change.dx for change in tried)])
     ratios = a + np.array([np.zeros_like(a), *(change.da for change in tried)])
     points = problem.points(xs, ratios)
+    if goals is not None and np.isfinite(points[0]).all():
+        problem.goals = goals = goals.begun(points[0])
     if not np.isfinite(points[0]).all():
         raise ComputationError(
             f"the engine {engine.name} has no answer for the grid",
@@ -152,7 +157,7 @@ def _ranked(
         if np.isfinite(errors[k])
     )
     best = different(suggestions, points[0])
-    return Ranking(space.grid, float(errors[0]), points[0], suggestions, best)
+    return Ranking(space.grid, float(errors[0]), points[0], suggestions, best, goals)
 
 
 def _with_probabilities(
@@ -163,11 +168,11 @@ def _with_probabilities(
     progress: Progress | None,
 ) -> Ranking:
     """Return a ranking of a task with tolerances that says how often prints are within them."""
-    goals, wanted = task.aims, task.tolerances
+    goals, wanted = ranking.goals or task.aims, task.tolerances
     if all(one is None for one in wanted):
         return ranking
     if warnings := without_scatter(task, ranking.grid):
-        return replace(ranking, warnings=tuple(warnings))
+        return replace(ranking, warnings=(*ranking.warnings, *warnings))
     designs = [(ranking.grid, ranking.points), *((one.grid, one.points) for one in ranking.best)]
     found: list[Probability | None] = []
     for grid, points in designs:
@@ -197,7 +202,7 @@ def different(
 
     Args:
         suggestions: the best first.
-        points: (G, 3) mm, the vertices of the design as it is.
+        points: (V, 3) mm, the vertices of the design as it is.
         count: how many.
     """
     chosen: list[Suggestion] = []

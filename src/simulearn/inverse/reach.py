@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from simulearn.errors import Message
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
+from simulearn.inverse.kinds import AtPoints, OnSet, Set
+from simulearn.inverse.vertex import Vertex
+from simulearn.surfaces import Curve, Surface
 
 SLACK = 1.1  # of the beams' length, which a target may be away; joints may move outwards
 LEAST = 0.3  # of the dimension; targets in the right unit hardly lie all nearer
@@ -25,33 +28,92 @@ def out_of_reach(grid: Grid, goals: Goals) -> list[Message]:
         grid: the design to begin with, its fixed joint at the origin.
         goals: what is wanted.
     """
+    if goals.pose is not None:
+        return _tiny_sets(grid, goals)
+    return _far_points(grid, goals) + _tiny_sets(grid, goals) + _far_sets(grid, goals)
+
+
+def _far_points(grid: Grid, goals: Goals) -> list[Message]:
+    """Return a warning for targets that are points."""
+    numbers = np.flatnonzero([kind == "point" for kind in goals.kinds])
+    parts = [part for part in goals.parts if isinstance(part.wanted, AtPoints)]
+    vertices = [vertex for part in parts for vertex in part.vertices]
+    if not vertices:
+        return []
     away = np.linalg.norm(goals.targets, axis=1)
-    flat = [np.linalg.norm(_place(grid, vertex.part, vertex.index)) for vertex in goals.vertices]
+    flat = [np.linalg.norm(_place(grid, vertex.part, vertex.index)) for vertex in vertices]
     if away.max() < TINY * grid.dimension and max(flat) > TINY * grid.dimension:
         text = (
             f"all targets lie within {away.max():.3g} mm of the fixed joint, and the grid reaches "
             f"{grid.dimension:.0f} mm; targets are in mm, seen from the fixed joint"
         )
-        likely = [
-            (name, factor)
-            for name, factor in UNITS.items()
-            if LEAST * grid.dimension < factor * away.max() < SLACK * grid.dimension
-        ]
+        likely = _likely(away.max(), grid)
         if likely:
             text += "; if they are in {}, multiply them by {:g}".format(*likely[0])
         return [Message("targets-tiny", "goals", text)]
     path = _paths(grid)
     messages = []
-    for k, vertex in enumerate(goals.vertices):
-        joints = [vertex.index] if vertex.part == "joint" else grid.beams[vertex.index].tolist()
-        longest = max(path[j] for j in joints)
-        if away[k] > SLACK * longest + 10:
+    for k, vertex, distance in zip(numbers, vertices, away, strict=True):
+        longest = _reach(grid, path, vertex)
+        if distance > SLACK * longest + 10:
             text = (
-                f"the target of goal {k} ({vertex}) lies {away[k]:.0f} mm from the fixed joint; "
+                f"the target of goal {k} ({vertex}) lies {distance:.0f} mm from the fixed joint; "
                 f"the beams that lead there are {longest:.0f} mm long"
             )
             messages.append(Message("target-far", f"goals[{k}]", text))
     return messages
+
+
+def _tiny_sets(grid: Grid, goals: Goals) -> list[Message]:
+    """Return a warning for surfaces and curves that are hardly in mm."""
+    messages = []
+    for kind, shape in _sets(goals):
+        if isinstance(shape, Surface | Curve) and shape.size < TINY * grid.dimension:
+            text = (
+                f"the {kind} is {shape.size:.3g} mm across, and the grid reaches "
+                f"{grid.dimension:.0f} mm"
+            )
+            likely = _likely(shape.size, grid)
+            if likely:
+                text += f"; if its file is in {likely[0][0]}, say so by its key unit"
+            messages.append(Message("targets-tiny", "goals", text))
+    return messages
+
+
+def _far_sets(grid: Grid, goals: Goals) -> list[Message]:
+    """Return a warning for surfaces, curves and planes that are out of reach."""
+    longest = float(_paths(grid).max())
+    messages = []
+    for kind, shape in _sets(goals):
+        away = float(np.linalg.norm(shape.closest(np.zeros((1, 3)))[0]))
+        if away > SLACK * longest + 10:
+            text = (
+                f"the {kind} lies {away:.0f} mm from the fixed joint; the beams reach "
+                f"{longest:.0f} mm"
+            )
+            messages.append(Message("target-far", "goals", text))
+    return messages
+
+
+def _sets(goals: Goals) -> list[tuple[str, Set]]:
+    """Return the surfaces, curves and planes of goals, each once."""
+    wanted = [part.wanted for part in goals.parts]
+    each = {id(one.set): (one.kind, one.set) for one in wanted if isinstance(one, OnSet)}
+    return list(each.values())
+
+
+def _likely(length: float, grid: Grid) -> list[tuple[str, float]]:
+    """Return the units in which a length would be about as long as a grid is."""
+    return [
+        (name, factor)
+        for name, factor in UNITS.items()
+        if LEAST * grid.dimension < factor * length < SLACK * grid.dimension
+    ]
+
+
+def _reach(grid: Grid, path: NDArray[np.float64], vertex: Vertex) -> float:
+    joints = [vertex.index] if vertex.part == "joint" else grid.beams[vertex.index].tolist()
+    return float(max(path[j] for j in joints))
 
 
 def not_near(grid: Grid, error: float, reach: Sequence[Message]) -> list[Message]:

@@ -33,7 +33,7 @@ class Loose:
 
     Attributes:
         z: (P + Q,) joints in mm, then ratios times UNIT.
-        points: (G, 3) mm, where vertices come to.
+        points: (V, 3) mm, where vertices come to.
         error: mm.
     """
 

@@ -6,8 +6,6 @@ its expected error, and a method that takes goals by least squares sees how far 
 well as where they are on average: E|p - t|^2 = |E p - t|^2 + var p.
 """
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,7 +43,7 @@ def robust_problem(
         space: of the designs.
         goals: what is wanted of the design.
         grid: the design to begin with.
-        known: (G, 3) mm, where its vertices are by finite elements; what the simulator of prints
+        known: (V, 3) mm, where its vertices are by finite elements; what the simulator of prints
             says elsewhere is moved by the difference.
         engine: that simulates the design; see `simulate.scatter.prints_source`.
         until: when to stop.
@@ -55,13 +53,13 @@ def robust_problem(
     material = load_material(grid.material)
     source = prints_source(material, engine)
     draw = even_prints(material, len(grid.beams), PRINTS)
-    shift = np.zeros((len(goals), 3))
+    shift = np.zeros_like(goals.offset)
     if known is not None:
         nominal = Draw([material], np.ones((1, len(grid.beams))))
         shift = np.nan_to_num(known - points_of_prints(grid, goals, nominal, source)[0])
     return Problem(
         space,
-        repeated(goals, PRINTS),
+        goals.repeated(PRINTS),
         _places(goals, draw, source, shift, out_of_time),
         source=drawing(PRINTS),
         until=until,
@@ -69,21 +67,11 @@ def robust_problem(
     )
 
 
-def repeated(goals: Goals, count: int) -> Goals:
-    """Return the goals of so many prints, those of one print after those of another."""
-    return replace(
-        goals,
-        vertices=goals.vertices * count,
-        targets=np.tile(goals.targets, (count, 1)),
-        weights=np.tile(goals.weights, count) / count,
-    )
-
-
 def _places(
     goals: Goals, draw: Draw, source: Source, shift: Array, cancel: Cancel | None
 ) -> Places:
     def places(designs: Designs) -> Array:
-        points = np.empty((len(designs), len(draw) * len(goals), 3))
+        points = np.empty((len(designs), len(draw) * len(goals.vertices), 3))
         for t, grid in enumerate(grids(designs)):
             there = points_of_prints(grid, goals, draw, source, cancel=cancel)
             points[t] = (there + shift).reshape(-1, 3)

@@ -17,7 +17,7 @@ from simulearn.simulate import Failure, Simulator
 from simulearn.simulate.learned import Learned
 
 Array = NDArray[np.float64]
-Places = Callable[[Designs], Array]  # designs -> (T, G, 3), NaN where there is no answer
+Places = Callable[[Designs], Array]  # designs -> (T, V, 3), NaN where there is no answer
 
 
 def places(engine: Simulator, goals: Goals, cancel: Cancel | None = None) -> Places:
@@ -49,7 +49,7 @@ def _together(engine: Learned, goals: Goals) -> Places:
 def _one_by_one(engine: Simulator, goals: Goals, cancel: Cancel | None) -> Places:
     def one_by_one(designs: Designs) -> Array:
         outcomes = engine.simulate(grids(designs), cancel=cancel)
-        points = np.full((len(designs), len(goals), 3), np.nan)
+        points = np.full((len(designs), len(goals.vertices), 3), np.nan)
         for t, outcome in enumerate(outcomes):
             if not isinstance(outcome, Failure):
                 points[t] = goals.points(outcome.joints[-1], outcome.beams[-1])

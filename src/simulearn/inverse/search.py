@@ -13,6 +13,7 @@ Where several answers are wanted, they come after that; see `answers`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib import import_module
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -148,11 +149,11 @@ class Search:
         """Search, check and correct within the limits; then regard prints, if the task asks."""
         goals, start = self.task.aims, self.task.start
         unknown = without_scatter(self.task, start)
-        warnings = [*out_of_reach(start, goals), *unknown]
+        warnings = [*self.task.warnings, *out_of_reach(start, goals), *unknown]
         space = Space.of(start, self.task.free, getattr(self.engine, "training", None))
         if self.task.limits.answers > 1:
             self.archive = Archive(Distance.of(space))
-        now = self._started(space, goals)
+        goals, now = self._started(space, goals)
         interrupted = False
         best = of_prints = nominal = None
         try:
@@ -185,6 +186,7 @@ class Search:
             tuple(self.steps),
             tuple(self.checks),
             self.seconds,
+            goals,
             interrupted,
             (*warnings, *([] if interrupted else not_near(start, error, warnings))),
             of_prints,
@@ -197,12 +199,16 @@ class Search:
         """Of searching and checking, earlier runs included."""
         return float(monotonic() - self._begun)
 
-    def _started(self, space: Space, goals: Goals) -> Scored:
-        """Return the design to begin with, and start the clock."""
-        problem = self.problem(space, goals, np.inf)
+    def _started(self, space: Space, goals: Goals) -> tuple[Goals, Scored]:
+        """Return the goals as they are begun, the design to begin with, and start the clock."""
         before = self._nominal_step() if self.steps else None
-        x, a = space.start if before is None else space.point(before.grid(space.grid))
-        start = problem.scored(x, a)
+        start = self.problem(space, goals, np.inf).scored(*space.start)
+        if np.isfinite(start.error):
+            goals = goals.begun(start.points)
+            x, a = space.start if before is None else space.point(before.grid(space.grid))
+            problem = self.problem(space, goals, np.inf)
+            error = float(problem.error(start.points[None])[0])
+            start = replace(start, error=error) if before is None else problem.scored(x, a)
         if not np.isfinite(start.error):
             raise ComputationError(
                 f"the engine {self.engine.name} has no answer for the design to begin with",
@@ -219,15 +225,15 @@ class Search:
         self._begun = monotonic() - ready - (self.steps[-1].seconds if before else 0.0)
         if before is None:
             self.note(space, start, 0, 1, 0, "the design to begin with")
-        return start
+        return goals, start
 
     def _resumed(self, goals: Goals) -> tuple[int, np.ndarray]:
-        """Return the phase to go on with, and by how much its targets are moved (G, 3) mm."""
+        """Return the phase to go on with, and by how much its targets are moved (V, 3) mm."""
         phase = self._nominal_step().phase
         for one in reversed(self.checks):
             if one.phase == phase - 1 and one.shift is not None:
                 return phase, one.shift
-        return 0, np.zeros_like(goals.targets)
+        return 0, np.zeros_like(goals.offset)
 
     def problem(self, space: Space, goals: Goals, until: float) -> Problem:
         """Return the problem to come to goals by the engine, until a time."""

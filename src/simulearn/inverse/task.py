@@ -1,76 +1,32 @@
 """The task file: a grid, goals, what may change, and how to search; JSON, `simulearn.task/1`."""
 
 import json
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    PrivateAttr,
-    SerializerFunctionWrapHandler,
-    ValidationError,
-    model_serializer,
-)
+from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError
 
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
-from simulearn.grid.arrays import shown, whole
+from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
-from simulearn.inverse.goals import Goals, Vertex
+from simulearn.inverse.goalfile import FilePart, Goal, Positive
+from simulearn.inverse.goals import Goals
+from simulearn.inverse.tasktext import KEYS, MOST_ANSWERS, line_of, place_of
+from simulearn.inverse.wanting import Shapes, goals_of, rows_of
 from simulearn.material import Material
 
 SCHEMA = "simulearn.task/1"
-MOST_ANSWERS = 20
 MORE = 2.0  # limits of seconds, that other answers may take after the first
 
 Index = Annotated[int, BeforeValidator(whole), Field(ge=0, lt=2**31)]
 Pair = Annotated[list[Index], Field(min_length=2, max_length=2)]
-Positive = Annotated[float, Field(gt=0)]
 
 
-def _plain_vertex(words: Any) -> Any:
-    """Return a vertex as it is kept: "center" as "centre", 2.0 as 2."""
-    if not isinstance(words, list):
-        return words
-    return ["centre" if word == "center" else whole(word) for word in words]
-
-
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
-
-    @model_serializer(mode="wrap")
-    def _written(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Leave out what is not wanted of prints or answers; files without it stay as they were."""
-        return {
-            key: value
-            for key, value in write(self).items()
-            if (key, value) not in (("tolerance", None), ("robust", False), ("answers", 1))
-        }
-
-
-class Goal(_Part):
-    """A vertex, the point where it is wanted, and how much it counts.
-
-    Attributes:
-        vertex: ["joint", k, "centre"], ["joint", k, corner] or ["beam", b, section, corner].
-        target: [x, y, z] mm, seen from the fixed joint.
-        weight: not negative.
-        tolerance: distance from the target that a print may have, mm; None: that of the task.
-    """
-
-    vertex: Annotated[list[Any], BeforeValidator(_plain_vertex)]
-    target: Annotated[list[float], Field(min_length=3, max_length=3)]
-    weight: Annotated[float, Field(ge=0)] = 1.0
-    tolerance: Positive | None = None
-
-
-class Pairs(_Part):
+class Pairs(FilePart):
     """What changes alike, so that a symmetric design stays one.
 
     Attributes:
@@ -81,11 +37,11 @@ class Pairs(_Part):
     """
 
     flip: Literal["x", "y", "xy", "none"] = "x"
-    joints: list[Pair] = []
-    actuators: list[Pair] = []
+    joints: list[Pair] = []  # noqa: RUF012  (pydantic copies it)
+    actuators: list[Pair] = []  # noqa: RUF012
 
 
-class Free(_Part):
+class Free(FilePart):
     """What may change, and by how much in one step.
 
     Attributes:
@@ -103,7 +59,7 @@ class Free(_Part):
     pairs: Pairs = Pairs()
 
 
-class Limits(_Part):
+class Limits(FilePart):
     """When to stop.
 
     Attributes:
@@ -125,7 +81,7 @@ class Limits(_Part):
         return self.seconds if self.answers == 1 else (1 + MORE) * self.seconds
 
 
-class Task(_Part):
+class Task(FilePart):
     """What is wanted of a grid, and how to search for it.
 
     Attributes:
@@ -138,6 +94,7 @@ class Task(_Part):
         limits: when to stop.
         tolerance: of the goals that have none of their own, mm; None: they have none.
         robust: whether a design is searched for whose prints come close, all in all.
+        pose: whether goals are seen from the fixed joint, or the shape may be placed anywhere.
     """
 
     schema_: Literal["simulearn.task/1"] = Field(alias="schema", default="simulearn.task/1")
@@ -149,7 +106,9 @@ class Task(_Part):
     limits: Limits = Limits()
     tolerance: Positive | None = None
     robust: bool = False
+    pose: Literal["fixed", "free"] = "fixed"
     _material: Material | None = PrivateAttr(None)  # that the grid holds itself
+    _shapes: Shapes = PrivateAttr(default_factory=Shapes)
 
     @property
     def start(self) -> Grid:
@@ -164,18 +123,24 @@ class Task(_Part):
 
     @property
     def aims(self) -> Goals:
-        """The goals as arrays."""
-        grid = self._design
-        return Goals.of(
-            [_vertex(goal.vertex, f"goals[{k}].vertex", grid) for k, goal in enumerate(self.goals)],
-            np.array([goal.target for goal in self.goals]),
-            np.array([goal.weight for goal in self.goals]),
-        )
+        """The goals as arrays, one for each vertex or face that an entry names."""
+        return goals_of(self.goals, self._design, self._shapes, self.pose == "free")
+
+    @property
+    def warnings(self) -> tuple[Message, ...]:
+        """What was mended or guessed in surfaces and curves."""
+        return tuple(self._shapes.warnings)
+
+    @property
+    def shapes_digest(self) -> str:
+        """SHA-256 of the surfaces and curves; "" where there are none."""
+        return self._shapes.digest
 
     @property
     def tolerances(self) -> tuple[float | None, ...]:
-        """The tolerance of each goal, mm."""
-        own = [goal.tolerance for goal in self.goals]
+        """The tolerance of each of the goals in `aims`, mm."""
+        grid = self._design
+        own = [goal.tolerance for goal in self.goals for _ in range(rows_of(goal, grid))]
         return tuple(self.tolerance if one is None else one for one in own)
 
     @property
@@ -190,51 +155,20 @@ class Task(_Part):
         return task
 
 
-KEYS = {
-    "schema": f'this program reads "{SCHEMA}"',
-    "grid": "a grid is written as in a grid file",
-    "goals": "goals are a list of at least one object with vertex, target, weight and tolerance",
-    "vertex": '["joint", k, "centre"], ["joint", k, corner] or ["beam", b, section, corner]',
-    "target": "a target is [x, y, z], finite numbers in mm",
-    "weight": "a weight is a number of at least 0",
-    "tolerance": "a tolerance is a length in mm, more than 0",
-    "robust": "robust is true or false",
-    "free": "free is an object with joints, actuators, move, ratio and pairs",
-    "joints": "joints are a list of indices counted from 0 (or of two of them, in pairs)",
-    "actuators": "actuators are a list of beams counted from 0 (or of two of them, in pairs)",
-    "move": "a move is a length in mm, more than 0 and at most 1000",
-    "ratio": "a step of ratios is more than 0 and at most 1",
-    "pairs": "pairs are an object with flip, joints and actuators",
-    "flip": 'flip is "x", "y", "xy" or "none"',
-    "method": "a method is a name",
-    "engine": "an engine is a name",
-    "limits": "limits are an object with iterations, seconds, corrections and answers",
-    "iterations": "iterations are an integer of at least 1",
-    "seconds": "seconds are a number more than 0",
-    "corrections": "corrections are an integer of at least 0",
-    "answers": f"answers are an integer from 1 to {MOST_ANSWERS}",
-}
-PLACES: dict[str, type[BaseModel]] = {
-    "goals": Goal,
-    "free": Free,
-    "pairs": Pairs,
-    "limits": Limits,
-}
-SECTIONS = ("start", "middle", "end")
-
-
 def read_task(path: Path | str, *, paths: bool = False) -> Task:
     """Return the task in a file.
 
     Args:
         path: of the file.
-        paths: whether the grid's material may be the path of a file; if not, it must be a name.
+        paths: whether the grid's material may be the path of a file, and whether surfaces and
+            curves may be files, seen from the folder of this one; if not, neither may.
 
     Raises:
         InputError: the file cannot be read or does not describe a task; one line says where.
     """
     try:
-        return task_from_dict(json.loads(read_text(path)), paths=paths)
+        folder = Path(path).parent if paths else None
+        return task_from_dict(json.loads(read_text(path)), paths=paths, folder=folder)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise InputError(
@@ -254,8 +188,24 @@ def write_task(task: Task, path: Path | str) -> None:
     Raises:
         InputError: the file cannot be written.
     """
+    data = task_to_dict(task)
+    _moved_paths(data, task, Path(path).parent)
     with replacing(path) as temporary:
-        temporary.write_text(json.dumps(task_to_dict(task), indent=1) + "\n", encoding="utf-8")
+        temporary.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+
+
+def _moved_paths(data: dict[str, Any], task: Task, folder: Path) -> None:
+    """Let the files that goals name be seen from another folder."""
+    here = task._shapes.folder
+    if here is None or here.resolve() == folder.resolve():
+        return
+    for goal in data["goals"]:
+        for key in ("surface", "curve", "away_from"):
+            said = goal.get(key)
+            if isinstance(said, dict) and "file" in said:
+                said["file"] = Path(
+                    os.path.relpath((here / said["file"]).resolve(), folder.resolve())
+                ).as_posix()
 
 
 def task_to_dict(task: Task) -> dict[str, Any]:
@@ -264,7 +214,11 @@ def task_to_dict(task: Task) -> dict[str, Any]:
 
 
 def task_from_dict(
-    data: Any, *, paths: bool = False, materials: Mapping[str, Material] | None = None
+    data: Any,
+    *,
+    paths: bool = False,
+    materials: Mapping[str, Material] | None = None,
+    folder: Path | str | None = None,
 ) -> Task:
     """Return the task that a dict with the file's keys describes.
 
@@ -272,6 +226,7 @@ def task_from_dict(
         data: such as JSON gives.
         paths: whether the grid's material may be the path of a file; if not, it must be a name.
         materials: those that the grid's material may name besides the ones that come along.
+        folder: that the files of surfaces and curves are seen from; None: no file may be named.
 
     Raises:
         InputError: a key, type, index or number is wrong; one line says which.
@@ -282,7 +237,7 @@ def task_from_dict(
         task = Task.model_validate(data)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
-        raise InputError(_line(first), "task", _place(first["loc"])) from error
+        raise InputError(line_of(first, Task), "task", place_of(first["loc"])) from error
     try:
         grid = grid_from_dict(task.grid, paths=paths, materials=materials)
     except InputError as error:
@@ -293,8 +248,9 @@ def task_from_dict(
             removed.code,
             removed.where,
         )
-    _check(task, grid)
     task._material = _own(grid)
+    task._shapes = Shapes(None if folder is None else Path(folder))
+    _check(task, grid)
     return task
 
 
@@ -305,10 +261,7 @@ def _own(grid: Grid) -> Material | None:
 
 def _check(task: Task, grid: Grid) -> None:
     """Raise InputError where the parts of a task do not fit each other."""
-    for k, goal in enumerate(task.goals):
-        _vertex(goal.vertex, f"goals[{k}].vertex", grid)
-    if not sum(goal.weight for goal in task.goals) > 0:
-        raise InputError("goals all have the weight 0; at least one counts", "task", "goals")
+    goals_of(task.goals, grid, task._shapes)
     joints, beams, free = len(grid.joints), len(grid.beams), task.free
     _indices(free.joints or [], joints, "free.joints", "joints")
     _indices(free.actuators or [], beams, "free.actuators", "beams")
@@ -341,60 +294,3 @@ def _indices(indices: Sequence[int], count: int, where: str, what: str) -> None:
                 "task",
                 f"{where}[{place}]",
             )
-
-
-def _vertex(words: list[Any], where: str, grid: Grid) -> Vertex:
-    """Return the vertex that a task names.
-
-    Raises:
-        InputError: there is no such vertex.
-    """
-
-    def number(place: int, count: int, what: str) -> int:
-        k = words[place]
-        if isinstance(k, bool) or not isinstance(k, int) or not 0 <= k < count:
-            raise InputError(
-                f"{where}[{place}] is {shown(k)}; {what} are numbered 0 to {count - 1}",
-                "task",
-                f"{where}[{place}]",
-            )
-        return k
-
-    def corner(place: int, count: int) -> int | None:
-        return None if words[place] == "centre" else number(place, count, "corners")
-
-    match words:
-        case ["joint", _, _]:
-            return Vertex("joint", number(1, len(grid.joints), "joints"), corner(2, 8))
-        case ["beam", _, named, _]:
-            beam = number(1, len(grid.beams), "beams")
-            section = SECTIONS.index(named) if named in SECTIONS else number(2, 3, "sections")
-            return Vertex("beam", beam, corner(3, 4), section)
-    text = f"{where} is {shown(words)}; a vertex is {KEYS['vertex']}"
-    raise InputError(text, "task", where)
-
-
-def _line(error: Any) -> str:
-    """Return one of pydantic's errors in our words."""
-    place, value = error["loc"], error["input"]
-    where = _place(place)
-    if not place:
-        keys = ", ".join(_keys(Task))
-        return f"is {shown(value)}; a task is an object with the keys {keys}"
-    names = [k for k in place if isinstance(k, str)]
-    hint = KEYS.get(names[-1], "")
-    if error["type"] == "missing":
-        return f"{where} is missing; {hint}"
-    if error["type"] == "extra_forbidden":
-        keys = ", ".join(_keys(PLACES[names[-2]] if len(names) > 1 else Task))
-        return f"{where} is not a key here; the keys are {keys}"
-    return f"{where} is {shown(value)}; {hint}"
-
-
-def _keys(model: type[BaseModel]) -> list[str]:
-    return [field.alias or name for name, field in model.model_fields.items()]
-
-
-def _place(keys: Sequence[str | int]) -> str:
-    """Return a path of keys and indices in words, as `goals[1].target[2]`."""
-    return "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")

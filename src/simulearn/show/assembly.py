@@ -1,13 +1,12 @@
 """Several morphed grids put together in space, as one picture."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from simulearn.rigid import fit_rotation
+from simulearn.rigid import Place
 from simulearn.show import style
 from simulearn.show.camera import Camera
 from simulearn.show.deformed import draw_skin, draw_triad, extent
@@ -15,40 +14,6 @@ from simulearn.simulate import Result, Skin, skin
 
 Array = NDArray[np.float64]
 SPACING = 4.0  # mm, length of the quadrilaterals along a beam
-
-
-@dataclass(frozen=True, eq=False)
-class Place:
-    """A rigid motion of a part to its place: p -> turn p + shift.
-
-    Attributes:
-        turn: (3, 3) rotation.
-        shift: (3,) mm.
-    """
-
-    turn: Array
-    shift: Array
-
-    def __call__(self, points: Array) -> Array:
-        """Return points (..., 3) mm in their place."""
-        return points @ self.turn.T + self.shift
-
-    def after(self, first: "Place") -> "Place":
-        """Return the motion that is this one after another."""
-        return Place(self.turn @ first.turn, self(first.shift))
-
-    @classmethod
-    def fitting(cls, points: Array, targets: Array) -> "Place":
-        """Return the motion that brings points (N, 3) closest to targets (N, 3), in squares."""
-        middle, wanted = points.mean(axis=0), targets.mean(axis=0)
-        turn, _ = fit_rotation(targets, points - middle)
-        return cls(turn, wanted - turn @ middle)
-
-    @classmethod
-    def about_z(cls, degrees: float) -> "Place":
-        """Return the turn about the z axis."""
-        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-        return cls(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]), np.zeros(3))
 
 
 def joined(parts: Sequence[tuple[Result, Place]]) -> Skin:

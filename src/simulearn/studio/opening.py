@@ -149,7 +149,14 @@ def _of_task(data: Any) -> dict[str, Any]:
             "part of a document"
         )
         messages.append(Message("opened-task", "file", text))
-    goals = [goal.model_dump(exclude={"tolerance"}) for goal in task.goals]
+    kept = [goal for goal in task.goals if goal.target is not None and goal.vertex is not None]
+    goals = [goal.model_dump(exclude={"tolerance"}) for goal in kept]
+    if len(kept) < len(task.goals) or task.pose != "fixed":
+        text = (
+            f"{len(task.goals) - len(kept)} goals of the task are no targets of single vertices, "
+            "or its pose is free; that is not part of a document"
+        )
+        messages.append(Message("opened-goals", "file", text))
     grid = grid_to_dict(grid_from_dict(task.grid))
     return {"kind": "task", "grid": grid, "goals": goals, "messages": messages}
 

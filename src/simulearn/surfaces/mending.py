@@ -1,0 +1,186 @@
+"""Triangles of a file, mended: what cannot be used is left out, flipped ones are turned.
+
+Which faces are turned is found without walking: each face is there twice, as it is and turned. Two
+that meet at an edge are joined as they are if they run along it in opposite directions, else each
+with the other one turned. Faces that belong together are then the connected parts.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from simulearn.errors import InputError, Message
+from simulearn.surfaces.tree import Tree
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+FLAT = 1e-12  # of the squared size of the surface; a triangle of less area has no direction
+SEAM = 1e-7  # of the size; vertices of two edges that are nearer are one
+FARTHEST = 1e9  # mm or what the unit of the file is
+TURNED_MOST = 200  # bodies that are looked at one by one
+
+
+def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices, list[Message]]:
+    """Return vertices (V, 3) and faces (T, 3) that can be used, and what was done to them.
+
+    Vertices at the same place become one.
+
+    Raises:
+        InputError: there is nothing that can be used.
+    """
+    messages: list[Message] = []
+    vertices = np.ascontiguousarray(vertices, np.float64)
+    faces = np.ascontiguousarray(faces, np.int64)
+    there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
+    known = np.all((faces >= 0) & (faces < len(vertices)), axis=1)
+    sound = known & np.all(there[np.where(known[:, None], faces, 0)], axis=1)
+    faces = _kept(faces, sound, "have corners that are no finite numbers", "not-finite", messages)
+    vertices, faces = _merged(vertices, faces)
+    corners = vertices[faces]
+    double = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    size = np.ptp(vertices, axis=0) if len(vertices) else np.zeros(3)
+    wide = double > FLAT * (size @ size)
+    faces = _kept(faces, wide, "have no area", "degenerate", messages)
+    _, first = np.unique(_numbered(np.sort(faces, axis=1)), return_index=True)
+    single = np.zeros(len(faces), bool)
+    single[first] = True
+    faces = _kept(faces, single, "are there more than once", "duplicates", messages)
+    faces = _sewn(vertices, faces)
+    if not len(faces):
+        why = f" ({messages[-1].message})" if messages else ""
+        raise InputError(f"has no triangle that can be used{why}", "surface-empty", "surface")
+    faces, count = _turned(vertices, faces, messages)
+    if count > 1:
+        text = f"is in {count} separate pieces; at each point the nearest of them counts"
+        messages.append(Message("surface-pieces", "surface", text))
+    used, index = np.unique(faces, return_inverse=True)
+    return vertices[used], index.reshape(-1, 3).astype(np.int64), messages
+
+
+def _kept(faces: Indices, keep: Mask, why: str, code: str, messages: list[Message]) -> Indices:
+    lost = int((~keep).sum())
+    if lost:
+        text = f"{lost:,} of {len(faces):,} triangles {why}; they are left out"
+        messages.append(Message(f"surface-{code}", "surface", text))
+    return faces[keep]
+
+
+def _merged(vertices: Array, faces: Indices) -> tuple[Array, Indices]:
+    """Return vertices of which no two are at the same place, and the faces among them."""
+    used, faces = np.unique(faces, return_inverse=True)
+    faces, vertices = faces.reshape(-1, 3), vertices[used] + 0.0  # -0.0 is 0.0
+    key = _numbered(vertices.view(np.int64))
+    _, first, index = np.unique(key, return_index=True, return_inverse=True)
+    alike = (vertices[first[index]] == vertices).all(axis=1)
+    own = np.where(alike, first[index], np.arange(len(vertices)))
+    return vertices, own[faces].astype(np.int64)
+
+
+def _sewn(vertices: Array, faces: Indices) -> Indices:
+    """Return the faces with vertices of open edges made one where they are as good as one.
+
+    Patches that are computed one by one meet but for rounding.
+    """
+    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    key, many = np.unique(ends[:, 0] * len(vertices) + ends[:, 1], return_counts=True)
+    alone = key[many == 1]
+    border = np.unique(np.concatenate([alone // len(vertices), alone % len(vertices)]))
+    if not len(border):
+        return faces
+    places = vertices[border]
+    pairs = KDTree(places).query_pairs(
+        SEAM * float(np.linalg.norm(np.ptp(places, axis=0))), output_type="ndarray"
+    )
+    if not len(pairs):
+        return faces
+    _, part = _parts(len(border), *pairs.T)
+    first = np.unique(part, return_index=True)[1]
+    own = np.arange(len(vertices))
+    own[border] = border[first[part]]
+    faces = own[faces]
+    a, b, c = faces.T
+    return faces[(a != b) & (b != c) & (c != a)]
+
+
+def _numbered(rows: Indices) -> Indices:
+    """Return a number (N,) for rows (N, 3) of integers; that of others is another, almost surely.
+
+    Source of the mixing: Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014.
+    """
+    mixed = np.zeros(len(rows), np.uint64)
+    for column in rows.astype(np.int64).view(np.uint64).T:
+        mixed += column + np.uint64(0x9E3779B97F4A7C15)
+        mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        mixed = (mixed ^ (mixed >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        mixed ^= mixed >> np.uint64(31)
+    return mixed.view(np.int64)
+
+
+def _turned(vertices: Array, faces: Indices, messages: list[Message]) -> tuple[Indices, int]:
+    """Return the faces, neighbours turned alike, bodies outwards; and how many pieces."""
+    count = len(faces)
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    of = np.tile(np.arange(count), 3)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    key = low * len(vertices) + high
+    order = np.argsort(key, kind="stable")
+    key, of, along = key[order], of[order], (ends[:, 0] < ends[:, 1])[order]
+    begins = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
+    many = np.diff(np.r_[begins, len(key)])
+    two = begins[many == 2]
+    a, b = of[two], of[two + 1]
+    odd = along[two] == along[two + 1]
+    pieces, piece = _parts(count, a, b)
+    rows = np.concatenate([a, a + count])
+    columns = np.concatenate([b + odd * count, b + ~odd * count])
+    _, part = _parts(2 * count, rows, columns)
+    first, second = part[:count], part[count:]
+    if (first == second).any():
+        text = "has only one side, as a Moebius strip; what is inside is not known"
+        messages.append(Message("surface-one-sided", "surface", text))
+        return faces, pieces
+    # Of the two ways to turn a piece the one that turns fewer faces.
+    turn = first > second
+    share = np.bincount(piece, turn) / np.bincount(piece)
+    turn ^= share[piece] > 0.5
+    flipped = np.where(turn[:, None], faces[:, ::-1], faces)
+    turn ^= _inwards(vertices, flipped, piece, pieces, bool((many == 2).all()))
+    if turn.any():
+        text = f"{int(turn.sum()):,} of {count:,} triangles faced the other way; they are turned"
+        messages.append(Message("surface-flipped", "surface", text))
+    return np.where(turn[:, None], faces[:, ::-1], faces), pieces
+
+
+def _inwards(vertices: Array, faces: Indices, piece: Indices, pieces: int, closed: bool) -> Mask:
+    """Return which faces (T,) belong to closed bodies that are turned inside out.
+
+    A body that is turned so within another one is a hollow of it, and right.
+    """
+    wrong = np.zeros(len(faces), bool)
+    if not closed:
+        return wrong
+    corners = vertices[faces] - vertices[faces].mean(axis=(0, 1))
+    a, b, c = np.moveaxis(corners, 1, 0)
+    volume = np.bincount(piece, (a * np.cross(b, c)).sum(axis=1))
+    for k in np.flatnonzero(volume < 0)[:TURNED_MOST]:
+        mine = piece == k
+        others = vertices[faces[~mine & (volume[piece] > 0)]]
+        place = vertices[faces[mine][0, :1]]
+        hollow = len(others) and Tree.of(others).windings(place)[0] > 0
+        wrong |= mine & (not hollow)
+    return wrong
+
+
+def _parts(count: int, a: Indices, b: Indices) -> tuple[int, Indices]:
+    """Return how many connected parts things joined in pairs have, and that of each (count,)."""
+    joined = coo_array((np.ones(len(a), bool), (a, b)), shape=(count, count))
+    number, part = connected_components(joined, directed=False)
+    return int(number), part
