@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.markup import escape
 
+from simulearn.cli.answers_report import answer_files, answers_picture, answers_table
 from simulearn.cli.base import (
     Json,
     MaterialOption,
@@ -23,9 +24,6 @@ from simulearn.cli.base import (
 )
 from simulearn.cli.progress import counting, preparing
 from simulearn.cli.search_report import (
-    answer_files,
-    answers_picture,
-    answers_table,
     live,
     ranking_figures,
     ranking_table,
