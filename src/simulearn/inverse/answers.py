@@ -46,6 +46,7 @@ Added = tuple[Check, Probability | None, list[Message]]
 
 PRINTER = "prusa-mk4"  # whose print times are told where no printer is named
 SLACK = 0.015  # of the dimension, by which another answer may be worse than the best
+FAR = 3.0  # times that, where there are not enough; it is said of them
 OFF = 2.0  # least distances, by which ratios drawn anew stay away from what is there
 BEGINNINGS = 4
 DRAWS = 5  # of ratios, until a design has an answer
@@ -93,7 +94,8 @@ class _Several:
         self.search, self.space, self.goals, self.best = search, space, goals, best
         self.archive, self.limits = archive, search.task.limits
         # Up to this error by the engine, a design may be an answer.
-        self.good = best.error_mm + SLACK * space.grid.dimension
+        self.slack = SLACK * space.grid.dimension
+        self.good = best.error_mm + self.slack
         self.first = search.seconds
         self.deadline = monotonic() + self.limits.seconds_in_all - self.first
         # What an earlier run came to; and the best, which nothing of its kind may replace.
@@ -207,9 +209,12 @@ class _Several:
         net = check_designs(grid.beams, grid.fixed, joints, ratios, material).net_lengths
         costs = np.column_stack([(np.abs(ratios) * net).sum(axis=1), net.sum(axis=1)])
         distances = archive.distance(joints, ratios, joints, ratios)
-        picked = choice(archive.errors, costs, distances, self.good, self.limits.answers)
+        count, errors = self.limits.answers, archive.errors
+        picked = choice(errors, costs, distances, self.good, count)
+        far = np.flatnonzero((errors > self.good) & (errors <= self.good + FAR * self.slack))
+        picked += far[np.argsort(errors[far], kind="stable")].tolist()
         checks = [self.best]
-        for k in picked[1:]:
+        for k in picked[1:count]:
             one = Grid(joints[k], grid.beams, ratios[k], grid.fixed, grid.material)
             checks.append(self.known(Check(one, float(archive.errors[k]), why=LATE, phase=ANSWERS)))
         return checks
@@ -264,13 +269,21 @@ class _Several:
         if not search.task.robust:
             best = min(answers, key=attrgetter("error"))
         search.answers = (best, *(one for one in answers if one is not best))
-        if len(answers) < self.limits.answers:
-            text = (
-                f"{len(answers)} answers of {self.limits.answers} were found: no more designs that "
-                f"differ come within {self.good:.2f} mm; more seconds may find some"
-            )
-            warnings.append(Message("answers-fewer", "limits.answers", text))
-        return best.check, best.probability, warnings
+        return best.check, best.probability, [*warnings, *self._wanting()]
+
+    def _wanting(self) -> list[Message]:
+        """Return warnings where there are fewer answers than wanted, or some are much worse."""
+        answers, count = self.search.answers, self.limits.answers
+        more = "more seconds, or more that is free to change, may help"
+        messages = []
+        if len(answers) < count:
+            text = f"{len(answers)} of {count} answers were found that differ; {more}"
+            messages.append(Message("answers-fewer", "limits.answers", text))
+        far = [str(k) for k, one in enumerate(answers, 1) if one.check.error_mm > self.good]
+        if far:
+            text = f"answers {', '.join(far)} stay more than {self.good:.2f} mm away; {more}"
+            messages.append(Message("answers-far", "limits.answers", text))
+        return messages
 
     def compared(self, checks: list[Check]) -> tuple[Answer, ...]:
         """Return designs as answers; print times and probabilities are not known yet."""

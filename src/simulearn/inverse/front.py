@@ -93,6 +93,7 @@ class Answer:
             "apart_mm": check.apart_mm,
             "actuators": self.actuators,
             "actuator_mm": round(self.actuator_mm, 3),
+            "printer": self.printer,
             "print_seconds": self.print_seconds and round(self.print_seconds, 1),
             "nearest": None if self.nearest is None else round(self.nearest, 4),
             "on_front": self.on_front,
