@@ -19,14 +19,15 @@ from simulearn.show.deformed import draw_skin
 from simulearn.show.deformed import extent as extent_deformed
 from simulearn.show.flat import draw_flat
 from simulearn.show.flat import extent as extent_flat
-from simulearn.show.inverse import SPACING, TARGET, draw_goals
+from simulearn.show.inverse import SPACING
+from simulearn.show.targets import TARGET, draw_goals, draw_sets, extents, placed, region
 from simulearn.simulate import Result, skin
 
 Array = NDArray[np.float64]
 Corners = tuple[Array, Array]  # lower left and upper right, (2,) mm
 
 LEAST, WIDE = 5, 1.75  # cards in a row whose width is left for charts; inches of a card
-HEAD, CHART, FOOT = 0.78, 2.3, 0.45  # inches
+HEAD, GAP, CHART, FOOT = 0.78, 0.2, 2.3, 0.45  # inches
 
 
 def answers_figure(
@@ -43,79 +44,74 @@ def answers_figure(
         goals: what is wanted.
         camera: where the viewer of the shapes is.
     """
-    surfaces = [None if shape is None else skin(shape, SPACING) for shape in shapes]
+    points = {
+        k: goals.points(shape.joints[-1], shape.beams[-1])
+        for k, shape in enumerate(shapes)
+        if shape is not None
+    }
+    skins = {
+        k: placed(skin(shape, SPACING), goals, points[k])
+        for k, shape in enumerate(shapes)
+        if shape is not None
+    }
+    drawn = list(skins.values())
+    box = region(drawn) if drawn else np.zeros((2, 3))
     plans = _union([extent_flat(one.grid.centred) for one in answers])
-    placed = camera.see(goals.targets)[:, :2]
-    drawn = [extent_deformed(surface, camera, [-1]) for surface in surfaces if surface is not None]
-    morphed = _union([*drawn, (placed.min(axis=0), placed.max(axis=0))])
+    seen = [extent_deformed(surface, camera, [-1]) for surface in drawn]
+    morphed = _union([*seen, extents(goals, box, camera)])
     across = max(float(high[0] - low[0]) for low, high in (plans, morphed))
     tall = [WIDE * float(high[1] - low[1]) / across for low, high in (plans, morphed)]
     width = WIDE * max(LEAST, len(answers))
-    height = HEAD + sum(tall) + 0.2 + CHART + FOOT
-    fig = Figure(figsize=(width, height), dpi=style.DPI)
-    for k, (one, shape, surface) in enumerate(zip(answers, shapes, surfaces, strict=True)):
-        left = k * WIDE / width
-        for line, (text, bold) in enumerate(_words(k, one)):
-            y = 1 - (0.14 + 0.17 * line) / height
-            weight = "bold" if bold else "normal"
-            fig.text(left + 0.06 / width, y, text, fontsize=7, va="center", fontweight=weight)
-        top = HEAD
-        for corners, inches in zip((plans, morphed), tall, strict=True):
-            ax = _panel(fig, (left, top, inches), corners, across)
-            top += inches + 0.1
-            if corners is plans:
-                draw_flat(ax, one.grid.centred, False)
-            elif shape is not None and surface is not None:
-                draw_skin(ax, surface.vertices[-1], surface, one.grid.fixed, camera)
-                points = goals.points(shape.joints[-1], shape.beams[-1])
-                draw_goals(ax, goals, points, camera, 3.5)
-    axes = [
-        fig.add_axes(
-            (
-                (0.62 + side * (width / 2 - 0.1)) / width,
-                (FOOT + 0.3) / height,
-                (width / 2 - 0.9) / width,
-                (CHART - 0.45) / height,
-            )
-        )
-        for side in (0, 1)
-    ]
-    _chart(axes[0], answers, [one.actuator_mm for one in answers], "length of the actuators, mm")
+    fig = Figure(figsize=(width, HEAD + sum(tall) + GAP + CHART + FOOT), dpi=style.DPI)
+    for k, one in enumerate(answers):
+        _head(fig, k, one)
+        draw_flat(_panel(fig, k, HEAD, tall[0], plans, across), one.grid.centred, False)
+        if k in skins:
+            ax = _panel(fig, k, HEAD + tall[0] + GAP / 2, tall[1], morphed, across)
+            draw_sets(ax, goals, box, camera)
+            draw_skin(ax, skins[k].vertices[-1], skins[k], one.grid.fixed, camera)
+            draw_goals(ax, goals, points[k], camera, 3.5)
     minutes = [np.nan if one.print_seconds is None else one.print_seconds / 60 for one in answers]
-    _chart(axes[1], answers, minutes, f"print, minutes ({answers[0].printer or 'not known'})")
-    axes[0].set_ylabel("error, mm", fontsize=8)
+    by = f" ({answers[0].printer})" if answers[0].printer else ""
+    left, right = _axes(fig)
+    _chart(left, answers, [one.actuator_mm for one in answers], "length of the actuators, mm")
+    _chart(right, answers, minutes, f"print, minutes{by}")
+    left.set_ylabel("error, mm", fontsize=8)
     style.legend(fig)
     return style.ink(fig)
 
 
-def _words(k: int, one: Answer) -> list[tuple[str, bool]]:
-    """Return the lines above a card, and whether they are bold."""
+def _head(fig: Figure, k: int, one: Answer) -> None:
+    """Write what an answer costs above its card."""
+    width, height = fig.get_size_inches()
     by = "by the engine" if one.check.error_fea_mm is None else "by finite elements"
-    lines = [
-        (f"{k + 1}   {one.error:.2f} mm{'' if one.on_front else '   (beaten)'}", True),
-        (by, False),
-        (f"{one.actuators} actuators, {one.actuator_mm:.0f} mm", False),
-    ]
+    beaten = "" if one.on_front else "   (beaten)"
+    lines = [by, f"{one.actuators} actuators, {one.actuator_mm:.0f} mm"]
     if one.print_seconds is not None:
         share = "" if one.share is None else f", {100 * one.share:.0f} % within"
-        lines.append((f"{one.print_seconds / 60:.0f} min to print{share}", False))
-    return lines
+        lines.append(f"{one.print_seconds / 60:.0f} min to print{share}")
+    for place, text in enumerate([f"{k + 1}   {one.error:.2f} mm{beaten}", *lines]):
+        fig.text(
+            (k * WIDE + 0.06) / width, 1 - (0.14 + 0.17 * place) / height, text, fontsize=7,
+            va="center", fontweight="normal" if place else "bold",
+        )  # fmt: skip
 
 
-def _panel(fig: Figure, place: tuple[float, float, float], corners: Corners, across: float) -> Axes:
+def _panel(fig: Figure, k: int, top: float, tall: float, corners: Corners, across: float) -> Axes:
     """Return axes for one picture of a card.
 
     Args:
         fig: the figure.
-        place: left end as a share of the figure's width; inches from its top; height in inches.
+        k: which card.
+        top: inches from the top of the figure.
+        tall: height, inches.
         corners: of what is drawn, mm.
         across: width of what is drawn, mm.
     """
-    left, top, inches = place
     width, height = fig.get_size_inches()
-    share = WIDE / width
-    bottom = 1 - (top + inches) / height
-    ax = fig.add_axes((left + 0.04 * share, bottom, 0.92 * share, inches / height))
+    ax = fig.add_axes(
+        ((k + 0.04) * WIDE / width, 1 - (top + tall) / height, 0.92 * WIDE / width, tall / height)
+    )
     low, high = corners
     middle = float(low[0] + high[0]) / 2
     ax.set_xlim(middle - across / 2, middle + across / 2)
@@ -123,6 +119,24 @@ def _panel(fig: Figure, place: tuple[float, float, float], corners: Corners, acr
     ax.set_aspect("equal")
     ax.axis("off")
     return ax
+
+
+def _axes(fig: Figure) -> tuple[Axes, Axes]:
+    """Return the axes of the two charts."""
+    width, height = fig.get_size_inches()
+    each, low = width / 2, FOOT + 0.3
+    left, right = (
+        fig.add_axes(
+            (
+                (0.62 + side * (each - 0.1)) / width,
+                low / height,
+                (each - 0.9) / width,
+                (CHART - 0.45) / height,
+            )
+        )
+        for side in (0, 1)
+    )
+    return left, right
 
 
 def _chart(ax: Axes, answers: Sequence[Answer], at: Sequence[float], label: str) -> None:
