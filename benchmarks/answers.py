@@ -3,17 +3,22 @@
 The tasks are those of benchmarks/inverse.py: the nine joint centres of a random design's shape by
 finite elements, beginning with a flat grid. Each is searched once for one answer and once for
 several, with the same limits. What is done is kept in a file, so the benchmark can be stopped and
-goes on.
+goes on. All times and limits are of the processor, whatever else the machine does: checks that run
+at once count one after the other.
 
-    python benchmarks/answers.py [--tasks 10] [--answers 5] [--seconds 30] [--out out/answers]
+    python benchmarks/answers.py [--tasks 10] [--answers 5] [--seconds 15] [--out out/answers]
     with the environment of the Makefile's ONE_THREAD
 """
 
 import argparse
 import json
+import time
 from pathlib import Path
 from typing import Any
 
+time.monotonic = time.process_time  # before a search takes its clock from there
+
+# ruff: noqa: E402
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -35,11 +40,13 @@ def run(targets: np.ndarray, seconds: float, answers: int) -> dict[str, Any]:
     limits = task.limits.model_copy(update={"answers": answers})
     task = task.model_copy(update={"limits": limits})
     found = optimize(task)
-    assert found.check is not None
+    check = found.check
+    assert check is not None
     distance = Distance.of(Space.of(task.start, task.free))
     grids = [one.grid for one in found.answers]
     return {
-        "error_fea_mm": found.check.error_fea_mm,
+        "error_mm": check.error_mm,
+        "error_fea_mm": check.error_fea_mm,
         "seconds": found.seconds,
         "first_seconds": [s.seconds for s in found.steps if s.phase != ANSWERS][-1],
         "designs": found.designs,
@@ -86,7 +93,7 @@ def table_row(k: int, row: dict[str, Any]) -> list[str]:
     good = [m for e, m in zip(errors, lengths, strict=True) if e <= ASKED]
     return [
         str(k),
-        f"{one['error_fea_mm']:.2f}",
+        f"{error(one):.2f}",
         f"{errors[0]:.2f}",
         f"{sum(e <= ASKED for e in errors)} of {len(errors)}",
         f"{max(errors):.2f}",
@@ -108,7 +115,7 @@ def picture(rows: list[dict[str, Any]]) -> Figure:
         answers = row["several"]["answers"]
         errors, lengths = [error(a) for a in answers], [a["actuator_mm"] for a in answers]
         faces = [GREEN if a["on_front"] else "white" for a in answers]
-        ax.axhline(row["one"]["error_fea_mm"], color=GREY, lw=0.8, ls="--")
+        ax.axhline(error(row["one"]), color=GREY, lw=0.8, ls="--")
         ax.scatter(lengths, errors, s=16, c=faces, edgecolors=GREEN, linewidths=0.9, zorder=2)
         ax.set_title(f"task {k}", fontsize=7, loc="left")
         ax.set_ylim(0, None)
@@ -124,7 +131,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--tasks", type=int, default=10)
     parser.add_argument("--answers", type=int, default=5)
-    parser.add_argument("--seconds", type=float, default=30.0)
+    parser.add_argument("--seconds", type=float, default=15.0)
     parser.add_argument("--out", type=Path, default=Path("out/answers"))
     given = parser.parse_args()
     rows = measure(given.tasks, given.seconds, given.answers, given.out)
@@ -135,7 +142,7 @@ def main() -> None:
         f"(seed {SEED}) by finite elements, the start is a flat grid of {LENGTH:g} mm beams, the "
         f"engine is the default model. Each is searched once for one answer and once for "
         f"{given.answers}, with the limit of {given.seconds:g} s, after which other answers may "
-        "take twice as long again. Errors are means over the nine goals, by finite elements."
+        "take twice as long again; times are of one core of the processor. Errors are means over the nine goals, by finite elements."
     )
     head = ["task", "one answer, mm", "best of several, mm", f"within {ASKED:g} mm", "worst, mm"]
     head += ["distance, least / mean", "actuators of the best / least, mm"]
@@ -144,10 +151,8 @@ def main() -> None:
     every = [error(answer) for row in rows for answer in row["several"]["answers"]]
     unchecked = sum(a["error_fea_mm"] is None for r in rows for a in r["several"]["answers"])
     ratio = [row["several"]["seconds"] / row["one"]["seconds"] for row in rows]
-    no_worse = sum(
-        row["several"]["error_fea_mm"] <= row["one"]["error_fea_mm"] + 0.05 for row in rows
-    )
-    better = sum(row["several"]["error_fea_mm"] < row["one"]["error_fea_mm"] - 0.05 for row in rows)
+    gains = [error(row["one"]) - error(row["several"]) for row in rows]
+    no_worse, better = sum(g >= -0.05 for g in gains), sum(g > 0.05 for g in gains)
     report.say(
         f"{sum(e <= ASKED for e in every)} of {len(every)} answers come within {ASKED:g} mm "
         f"({unchecked} had no time for their check by finite elements and count by the model). "

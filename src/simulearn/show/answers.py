@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 Corners = tuple[Array, Array]  # lower left and upper right, (2,) mm
 
 LEAST, WIDE = 5, 1.75  # cards in a row whose width is left for charts; inches of a card
+MARGIN = 0.02  # of what is drawn on a card
 HEAD, GAP, CHART, FOOT = 0.78, 0.2, 2.3, 0.45  # inches
 
 
@@ -150,13 +151,14 @@ def _chart(ax: Axes, answers: Sequence[Answer], at: Sequence[float], label: str)
     for marks, face in ((known & front, TARGET), (known & ~front, "white")):
         ax.plot(costs[marks], errors[marks], "o", ms=5, mfc=face, mec=TARGET, mew=1.0, zorder=2)
     for k in np.flatnonzero(known):
-        offset = (0, 5)
         ax.annotate(
-            str(k + 1), (costs[k], errors[k]), offset, textcoords="offset points",
-            fontsize=7, ha="center",
-        )  # fmt: skip
+            str(k + 1), (costs[k], errors[k]), (4, 3), textcoords="offset points", fontsize=7
+        )
     ax.set_ylim(0, 1.2 * float(errors.max()) or 1.0)
-    ax.margins(x=0.12)
+    if known.any():
+        middle, half = np.ptp(costs[known]) / 2 + costs[known].min(), 0.62 * np.ptp(costs[known])
+        half = max(half, 0.01 * middle)  # what hardly differs does not look as if it did
+        ax.set_xlim(middle - half, middle + half)
     ax.set_xlabel(label, fontsize=8)
     ax.grid(lw=0.3, color=style.GHOST_LINE)
     ax.spines[["top", "right"]].set_visible(False)
@@ -164,5 +166,6 @@ def _chart(ax: Axes, answers: Sequence[Answer], at: Sequence[float], label: str)
 
 
 def _union(extents: Sequence[Corners]) -> Corners:
-    low, high = zip(*extents, strict=True)
-    return np.min(low, axis=0), np.max(high, axis=0)
+    low, high = (np.array(ends) for ends in zip(*extents, strict=True))
+    margin = MARGIN * float(np.max(high - low))
+    return low.min(axis=0) - margin, high.max(axis=0) + margin
