@@ -168,6 +168,8 @@ def _lines_of_search(found: "SearchResult") -> list[str]:
     ]
     if check is not None and fea is None and check.why:
         lines.append(f"finite elements have no answer: {check.why}")
+    for k, one in enumerate(found.answers[1:], 2):
+        lines.append(f"answer {k}: {one.error:.2f} mm, {one.words}")
     return lines + [message.message for message in found.warnings]
 
 

@@ -304,6 +304,21 @@ def test_a_search_from_the_first_step_to_its_result(engines):
     assert [entry["engine"] for entry in header["results"]] == ["learned", "fea"]
 
 
+def test_a_search_for_several_answers_has_them_all_in_its_result(engines, monkeypatch):
+    monkeypatch.setattr("simulearn.inverse.answers.SLACK", 1.0)
+    client = Client(Settings())
+    limits = TASK["limits"] | {"answers": 3, "seconds": 2}
+    name = client.post("/api/optimize", TASK | {"limits": limits}).json()["job"]
+    answer, steps = finished(client, name)
+    assert (answer["state"], answer["progress"]["total"]) == ("done", 100)
+    answers = answer["result"]["answers"]
+    assert 1 < len(answers) <= 3
+    assert answers[0]["grid"] == answer["result"]["grid"]
+    assert all(row["print_seconds"] > 60 and row["actuator_mm"] >= 0 for row in answers)
+    assert -2 in {step["phase"] for step in steps}
+    assert task_from_dict(TASK | {"grid": answers[1]["grid"]})
+
+
 def test_a_search_that_is_cancelled_before_it_scored_anything_has_no_result(engines):
     engines.most = 0
     client = Client(Settings())
@@ -338,6 +353,8 @@ def test_a_search_that_is_cancelled_later_has_its_best_design(engines):
         ({"engine": "calculix"}, "engine-unknown", "engine"),
         ({"method": "luck"}, "method-unknown", "method"),
         ({"limits": {"seconds": 1e5}}, "task", "limits.seconds"),
+        ({"limits": {"seconds": 300, "answers": 2}}, "task", "limits.seconds"),
+        ({"limits": {"answers": 0}}, "task", "limits.answers"),
         ({"limits": {"iterations": 10**6}}, "task", "limits.iterations"),
         ({"free": {"joints": [], "actuators": []}}, "input", ""),
         ({"grid": SADDLE | {"material": "/etc/passwd"}}, "material-path", "material"),

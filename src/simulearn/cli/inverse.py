@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.markup import escape
 
+from simulearn.cli.answers_report import answer_files, answers_picture, answers_table
 from simulearn.cli.base import (
     Json,
     MaterialOption,
@@ -82,6 +83,18 @@ def optimize(
             help="Whether prints of the design shall come close, and not only the design.",
         ),
     ] = None,
+    answers: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=20,
+            help="How many designs that differ; several take up to three times the seconds.",
+        ),
+    ] = None,
+    printer: Annotated[
+        str | None,
+        typer.Option(help="A printer's name, or a profile (.toml), for print times of answers."),
+    ] = None,
     afresh: Annotated[
         bool, typer.Option("--afresh", help="Do not go on from an earlier run in the folder.")
     ] = False,
@@ -89,12 +102,18 @@ def optimize(
     as_json: Json = False,
 ) -> None:
     """Search for a grid that comes where it is wanted; the same command goes on later."""
+    from simulearn.fabricate import load_printer
     from simulearn.inverse import Past, read_task, search_figures
     from simulearn.inverse import optimize as search
     from simulearn.inverse.keeping import identity, read_past, write_past
 
     wanted = _of_material(read_task(task, paths=True), material)
-    limits = {"seconds": seconds, "iterations": iterations, "corrections": corrections}
+    limits = {
+        "seconds": seconds,
+        "iterations": iterations,
+        "corrections": corrections,
+        "answers": answers,
+    }
     named = {"method": method, "engine": engine, "tolerance": tolerance, "robust": robust}
     wanted = wanted.model_copy(
         update={
@@ -104,6 +123,7 @@ def optimize(
             ),
         }
     )
+    machine = load_printer(printer) if printer else None
     folder = output or Path("searches") / Path(task).stem
     folder_of(folder)
     name = identity(wanted, model)
@@ -116,11 +136,12 @@ def optimize(
             write_past(folder, name, steps, past.checks)
             show(step)
 
-        result = search(wanted, model=model, progress=progress, before=past)
+        result = search(wanted, model=model, progress=progress, before=past, printer=machine)
     write_past(folder, name, result.steps, result.checks)
     figures = search_figures(wanted, result)
     write_grid(result.grid, folder / "best.json")
     write_json(folder / "summary.json", figures)
+    of_answers = answer_files(result.answers, folder) if result.answers else []
     warn(result.warnings)
     if result.interrupted:
         err.print(
@@ -130,6 +151,8 @@ def optimize(
         raise KeyboardInterrupt
     try:
         names = search_pictures(wanted, result, folder, model)
+        if result.answers:
+            names += answers_picture(wanted, result, folder, model)
     except (ComputationError, InputError) as error:  # the search itself has succeeded
         names = []
         err.print(f"[yellow]the pictures could not be drawn:[/] {escape(str(error))}")
@@ -138,7 +161,9 @@ def optimize(
         return
     for line in search_words(figures, result):
         out.print(line)
-    names = ["best.json", "summary.json", "history.csv", *names]
+    if result.answers:
+        out.print(answers_table(result.answers))
+    names = ["best.json", "summary.json", "history.csv", *of_answers, *names]
     out.print(f"wrote {escape(str(folder))}/{', '.join(names)}")
 
 

@@ -140,8 +140,12 @@ def search_pictures(
 
 def _changes(result: "SearchResult", most: int) -> "list[Step]":
     """Return the steps at which the best design changed, at most so many, the last one always."""
+    from simulearn.inverse.keeping import ANSWERS
+
     kept: list[Step] = []
     for step in result.steps:
+        if step.phase == ANSWERS:
+            continue
         if not kept or (step.joints, step.actuators) != (kept[-1].joints, kept[-1].actuators):
             kept.append(step)
     final = replace(
@@ -204,18 +208,19 @@ def ranking_table(ranking: "Ranking", goals: bool) -> Table:
         table.caption_justify = "left"
         table.caption = (
             f"within the tolerances of all goals, of {of_prints.drawn} prints by "
-            f"{of_prints.engine}; {_share(of_prints)} as it is"
+            f"{of_prints.engine}; {share_words(of_prints)} as it is"
         )
     table.add_column("moves, mm", justify="right")
     for k, one in enumerate(ranking.best, 1):
         gain = ranking.error_mm - one.error_mm
         errors = [f"{one.error_mm:.1f}", f"{gain:+.1f}"] if goals else []
-        shares = [] if of_prints is None else [_share(one.probability)]
+        shares = [] if of_prints is None else [share_words(one.probability)]
         table.add_row(str(k), one.change.words, *errors, *shares, f"{one.moved_mm:.1f}")
     return table
 
 
-def _share(told: "Probability | None") -> str:
+def share_words(told: "Probability | None") -> str:
+    """Return how many prints are within all tolerances."""
     if told is None or told.together is None:
         return "not known"
     return f"{100 * told.together:.0f} %"
@@ -250,8 +255,10 @@ def _line(step: "Step") -> None:
 
 
 def _progress(step: "Step") -> str:
+    from simulearn.inverse.keeping import ANSWERS, ROBUST
+
     corrected = f", correction {step.phase}" if step.phase > 0 else ""
-    corrected = ", prints" if step.phase < 0 else corrected
+    corrected = {ROBUST: ", prints", ANSWERS: ", another answer"}.get(step.phase, corrected)
     return (
         f"{step.error_mm:.2f} mm, {step.designs} designs, iteration {step.iteration}{corrected}, "
         f"{step.seconds:.0f} s"

@@ -4,6 +4,7 @@ from simulearn.inverse.changes import Change, changes
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.figures import search_figures
 from simulearn.inverse.found import SearchResult
+from simulearn.inverse.front import Answer
 from simulearn.inverse.goals import Goals, Vertex
 from simulearn.inverse.keeping import Past, Step
 from simulearn.inverse.ranking import Ranking, Suggestion, rank
@@ -19,6 +20,7 @@ from simulearn.inverse.task import (
 
 __all__ = [
     "METHODS",
+    "Answer",
     "Change",
     "Check",
     "Goals",

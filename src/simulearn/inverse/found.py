@@ -6,6 +6,7 @@ from simulearn.display import Displayed
 from simulearn.errors import Message
 from simulearn.grid import Grid
 from simulearn.inverse.checking import Check
+from simulearn.inverse.front import Answer
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import Step
 from simulearn.inverse.probability import Probability
@@ -27,6 +28,7 @@ class SearchResult(Displayed):
         warnings: about the goals.
         probability: how often prints of it meet the goals, where the task asks anything of prints.
         nominal: the same of the best design without regard to prints, of a robust search.
+        answers: designs that differ, the best first, where more than one is wanted.
     """
 
     check: Check | None
@@ -40,6 +42,7 @@ class SearchResult(Displayed):
     warnings: tuple[Message, ...] = ()
     probability: Probability | None = None
     nominal: Probability | None = None
+    answers: tuple[Answer, ...] = ()
 
     @property
     def designs(self) -> int:

@@ -33,7 +33,13 @@ OF = {
     "away_from": (),
 }
 # Left out of a file where they say nothing, so that files without them stay as they were.
-SILENT: dict[str, Any] = {"tolerance": None, "robust": False, "pose": "fixed", "slide": True}
+SILENT: dict[str, Any] = {
+    "tolerance": None,
+    "robust": False,
+    "pose": "fixed",
+    "slide": True,
+    "answers": 1,
+}
 
 
 def _plain_words(words: Any) -> Any:

@@ -18,6 +18,7 @@ from simulearn.inverse.task import Task, task_to_dict
 SCHEMA = "simulearn.search/1"
 COLUMNS = ("iteration", "phase", "seconds", "designs", "error_mm", "words")
 ROBUST = -1  # the phase of a robust search in which prints are looked at
+ANSWERS = -2  # the phase in which other answers are looked for
 FIGURES = ("error_mm", "error_fea_mm", "why", "apart_mm", "bound_mm", "phase")  # of a check
 
 
@@ -27,7 +28,8 @@ class Step:
 
     Attributes:
         iteration: from 1; 0 is the design to begin with.
-        phase: 0 searching, 1 and more after so many corrections by finite elements; ROBUST.
+        phase: 0 searching, 1 and more after so many corrections by finite elements; ROBUST;
+            ANSWERS, whose steps are each another design and its own error.
         seconds: of searching and checking, all runs together.
         designs: scored so far.
         error_mm: of the best so far, by the engine, against the targets of the phase; expected of

@@ -66,7 +66,7 @@ def newton(problem: Problem, start: Scored) -> Iterator[Advance]:
         if k == 0 and start.a.any():  # ratios at their limits are a bad place to relax from
             x, a = start.x, 0 * a
         if problem.model is None:
-            begin = _nearby(problem, x, problem.space.nearest(x, a))
+            begin = _nearby(problem, x, problem.space.nearest(x, a), start)
 
 
 def descent(problem: Problem, start: Scored) -> Iterator[Advance]:
@@ -90,13 +90,12 @@ def descent(problem: Problem, start: Scored) -> Iterator[Advance]:
             yield Advance("nothing better nearby")
 
 
-def _nearby(problem: Problem, x: Array, a: Array) -> Scored:
+def _nearby(problem: Problem, x: Array, a: Array, start: Scored) -> Scored:
     """Return a design to begin again from, or the best there is if that has no answer."""
     nearby = problem.scored(x, a)
     if np.isfinite(nearby.error):
         return nearby
-    assert problem.best is not None
-    return problem.best
+    return problem.best or start
 
 
 def probed(problem: Problem, now: Scored) -> Slope:

@@ -68,18 +68,18 @@ def regard_prints(search: Search, space: Space, goals: Goals, best: Check) -> Re
         CancelledError: the search was stopped.
     """
     warnings: list[Message] = []
-    nominal = _probability(search, best, goals, warnings)
+    nominal = probability_of(search, best, goals, warnings)
     if not search.task.robust:
         return best, nominal, None, warnings
     robust = _robust(search, space, goals, best, warnings)
     if robust is not None and robust is not best:
-        other = _probability(search, robust, goals, warnings)
+        other = probability_of(search, robust, goals, warnings)
         if other is not None and (nominal is None or other.better_than(nominal)):
             return robust, other, nominal, warnings
     return best, nominal, nominal, warnings
 
 
-def _probability(
+def probability_of(
     search: Search, design: Check, goals: Goals, warnings: list[Message]
 ) -> Probability | None:
     """Return how often prints of a design meet the goals; None where there is no answer."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import Cancel, stop_if
 from simulearn.grid import Grid
+from simulearn.inverse.archive import Archive
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.scoring import Places
 from simulearn.inverse.space import Space
@@ -75,6 +76,8 @@ class Problem:
         designs: how many were scored.
         collides: whether parts of a design run through each other; None: nobody looks. Of a batch
             only designs that would become the best are looked at, the best of them first.
+        archive: keeps the best of each kind, where several answers are wanted.
+        allowed: which designs may be scored at all, besides that they are valid.
     """
 
     space: Space
@@ -88,6 +91,8 @@ class Problem:
     best: Scored | None = None
     designs: int = field(default=0)
     collides: Callable[[Designs], bool] | None = None
+    archive: Archive | None = None
+    allowed: Callable[[Designs], NDArray[np.bool_]] | None = None
 
     def points(self, x: Array, a: Array) -> Array:
         """Return where the vertices of points (T, P), (T, Q) come to: (T, V, 3) mm.
@@ -100,8 +105,13 @@ class Problem:
         self.going()
         points = np.full((len(x), len(self.goals.vertices), 3), np.nan)
         valid = np.flatnonzero(self.space.valid(x, a))
+        if self.allowed is not None:
+            valid = valid[self.allowed(self.space.designs(x[valid], a[valid]))]
         if len(valid):
-            points[valid] = self.places(self.space.designs(x[valid], a[valid]))
+            designs = self.space.designs(x[valid], a[valid])
+            points[valid] = self.places(designs)
+            if self.archive is not None:
+                self.archive.add(designs.flat, designs.actuators, self.error(points[valid]))
         self.designs += len(valid)
         errors = self.error(points)
         self._remember(x, a, points, errors)

@@ -7,22 +7,29 @@ that found a design returns it, whatever a check, an interrupt or a token does a
 
 Of a robust search this is the first half: the second goes on from its best design with a few prints
 of each design, and the better of both by the probability that a print meets the goals is returned.
+Where several answers are wanted, they come after that; see `answers`.
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from importlib import import_module
 from time import monotonic
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, stop_if
 from simulearn.extras import require
 from simulearn.grid import Grid
+from simulearn.inverse.answers import add_answers
+from simulearn.inverse.archive import Archive, Distance
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.found import SearchResult
+from simulearn.inverse.front import Answer
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.keeping import ROBUST, Past, Step
+from simulearn.inverse.keeping import ANSWERS, Past, Step
 from simulearn.inverse.prints import regard_prints, without_scatter
 from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, Until, drawing
 from simulearn.inverse.reach import not_near, out_of_reach
@@ -33,6 +40,9 @@ from simulearn.simulate import Simulator
 from simulearn.simulate import engine as engine_of
 from simulearn.simulate.calls import warm
 from simulearn.simulate.learned import Learned
+
+if TYPE_CHECKING:
+    from simulearn.fabricate import Printer
 
 METHODS = {  # name -> module, function
     "default": ("simulearn.inverse.newton", "newton"),
@@ -77,6 +87,7 @@ def optimize(
     progress: Progress | None = None,
     cancel: Cancel | None = None,
     before: Past | None = None,
+    printer: Printer | str | None = None,
 ) -> SearchResult:
     """Search for a design whose vertices come to their targets.
 
@@ -89,6 +100,8 @@ def optimize(
         progress: called after each iteration with the step that was done, the best design in it.
         cancel: stops the search within an iteration.
         before: an earlier run, from which to go on.
+        printer: whose print times several answers are told with, or the name of one; a common one
+            if not given.
 
     Raises:
         InputError: the grid is not valid, nothing may change, method or engine is not known.
@@ -97,7 +110,7 @@ def optimize(
     simulator = engine or task.engine
     if isinstance(simulator, str):
         simulator = engine_of(simulator, model)
-    return Search(task, simulator, progress, cancel, before or Past()).run()
+    return Search(task, simulator, progress, cancel, before or Past(), printer).run()
 
 
 class Search:
@@ -109,6 +122,7 @@ class Search:
         progress: called after each iteration.
         cancel: stops the search.
         before: an earlier run.
+        printer: whose print times count, or the name of one.
     """
 
     def __init__(
@@ -118,11 +132,15 @@ class Search:
         progress: Progress | None,
         cancel: Cancel | None,
         before: Past,
+        printer: Printer | str | None = None,
     ) -> None:
         self.task, self.engine, self.cancel = task, engine, cancel
         self.limits = _nominal(task)
         self.method = method(task.method)
         self.steps, self.checks = list(before.steps), list(before.checks)
+        self.archive: Archive | None = None
+        self.answers: tuple[Answer, ...] = ()
+        self.printer = printer
         self._progress = progress
         self._asked, self._begun = monotonic(), np.inf
         self.checking = CHECKING * len(task.grid["beams"])
@@ -133,6 +151,8 @@ class Search:
         unknown = without_scatter(self.task, start)
         warnings = [*self.task.warnings, *out_of_reach(start, goals), *unknown]
         space = Space.of(start, self.task.free, getattr(self.engine, "training", None))
+        if self.task.limits.answers > 1:
+            self.archive = Archive(Distance.of(space))
         goals, now = self._started(space, goals)
         interrupted = False
         best = of_prints = nominal = None
@@ -148,13 +168,17 @@ class Search:
             if best is not None and self.task.of_prints and not unknown:
                 best, of_prints, nominal, said = regard_prints(self, space, goals, best)
                 warnings += said
+            if best is not None and self.archive is not None:
+                best, of_prints, said = add_answers(self, space, goals, best, of_prints)
+                warnings += said
         except (KeyboardInterrupt, CancelledError):
             interrupted = True
         best = best or self._best()
         if best is not None and (not interrupted or best.error_fea_mm is not None):
             grid, error = best.grid, best.error_mm
         else:
-            best, grid, error = None, self.steps[-1].grid(space.grid), self.steps[-1].error_mm
+            last = next(step for step in reversed(self.steps) if step.phase != ANSWERS)
+            best, grid, error = None, last.grid(space.grid), last.error_mm
         return SearchResult(
             best,
             grid,
@@ -171,6 +195,7 @@ class Search:
             ),
             of_prints,
             nominal,
+            self.answers,
         )
 
     @property
@@ -226,6 +251,7 @@ class Search:
             until=until,
             cancel=self.cancel,
             collides=colliding(self.engine, Until(self.cancel, until)),
+            archive=self.archive,
         )
 
     def _searched(self, space: Space, goals: Goals, start: Scored, phase: int) -> Scored:
@@ -264,11 +290,17 @@ class Search:
             stop_if(self.cancel)
         return problem.best
 
-    def checked(self, grid: Grid, now: Scored, goals: Goals, phase: int) -> Check:
-        """Return the check of a design, perhaps one of an earlier run."""
+    def known_check(self, grid: Grid) -> Check | None:
+        """Return the check of a design, perhaps of an earlier run; None if there is none."""
         for one in self.checks:
             if one.error_fea_mm is not None and _same(one.grid, grid):
                 return one
+        return None
+
+    def checked(self, grid: Grid, now: Scored, goals: Goals, phase: int) -> Check:
+        """Return the check of a design, perhaps one of an earlier run."""
+        if (known := self.known_check(grid)) is not None:
+            return known
         begun = monotonic()
         grace = 0.0 if self.checks else min(GRACE, GRACE_SHARE * self.task.limits.seconds)
         until = Until(self.cancel, self._begun + self.task.limits.seconds + grace)
@@ -298,13 +330,13 @@ class Search:
 
     def _nominal_step(self) -> Step:
         """Return the last step before prints were looked at."""
-        return next(step for step in reversed(self.steps) if step.phase != ROBUST)
+        return next(step for step in reversed(self.steps) if step.phase >= 0)
 
     def _best(self) -> Check | None:
         """Return the best check of a design that was found without regard to prints."""
         best: Check | None = None
         for one in self.checks:
-            if one.phase != ROBUST:
+            if one.phase >= 0:
                 best = one if one.better_than(best) else best
         return best
 

@@ -15,11 +15,12 @@ from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
 from simulearn.inverse.goalfile import FilePart, Goal, Positive
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.tasktext import KEYS, line_of, place_of
+from simulearn.inverse.tasktext import KEYS, MOST_ANSWERS, line_of, place_of
 from simulearn.inverse.wanting import Shapes, goals_of, rows_of
 from simulearn.material import Material
 
 SCHEMA = "simulearn.task/1"
+MORE = 2.0  # limits of seconds, that other answers may take after the first
 
 Index = Annotated[int, BeforeValidator(whole), Field(ge=0, lt=2**31)]
 Pair = Annotated[list[Index], Field(min_length=2, max_length=2)]
@@ -66,11 +67,18 @@ class Limits(FilePart):
         seconds: of getting ready, searching and checking; only the first check may take up to a
             quarter more, and compiling once on a machine longer than half of it.
         corrections: how often to go on from targets corrected by FEA.
+        answers: how many designs that differ are wanted; several take up to thrice the seconds.
     """
 
     iterations: Annotated[int, Field(ge=1)] = 1000
     seconds: Positive = 30.0
     corrections: Annotated[int, Field(ge=0)] = 2
+    answers: Annotated[int, Field(ge=1, le=MOST_ANSWERS)] = 1
+
+    @property
+    def seconds_in_all(self) -> float:
+        """That a search may take for all answers."""
+        return self.seconds if self.answers == 1 else (1 + MORE) * self.seconds
 
 
 class Task(FilePart):

@@ -17,6 +17,7 @@ from simulearn.inverse.goalfile import (
 )
 from simulearn.inverse.naming import FACE, VERTEX
 
+MOST_ANSWERS = 20
 KEYS = {
     "schema": 'this program reads "simulearn.task/1"',
     "grid": "a grid is written as in a grid file",
@@ -60,10 +61,11 @@ KEYS = {
     "flip": 'flip is "x", "y", "xy" or "none"',
     "method": "a method is a name",
     "engine": "an engine is a name",
-    "limits": "limits are an object with iterations, seconds and corrections",
+    "limits": "limits are an object with iterations, seconds, corrections and answers",
     "iterations": "iterations are an integer of at least 1",
     "seconds": "seconds are a number more than 0",
     "corrections": "corrections are an integer of at least 0",
+    "answers": f"answers are an integer from 1 to {MOST_ANSWERS}",
 }
 PARTS: dict[str, type[BaseModel]] = {
     "goals": Goal,

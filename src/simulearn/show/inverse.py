@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
-from simulearn.inverse.keeping import ROBUST, Step
+from simulearn.inverse.keeping import ANSWERS, ROBUST, Step
 from simulearn.inverse.ranking import Ranking, Suggestion
 from simulearn.show import style
 from simulearn.show.camera import Camera
@@ -37,6 +37,7 @@ def error_curve(steps: Sequence[Step], error_fea_mm: float | None = None) -> Fig
         steps: of a search.
         error_fea_mm: of its answer by finite elements.
     """
+    steps = _of_one(steps)
     figure = Figure(figsize=(7.2, 2.7), dpi=style.DPI, layout="constrained")
     axes = figure.subplots(1, 2, sharey=True)
     # A search that reached its target exactly still has a place on the scale.
@@ -206,6 +207,11 @@ def _mark(ax: Axes, one: Suggestion, before: Grid) -> None:
         else:
             u, v = after.joints[after.beams[k]].mean(axis=0)
         ax.plot(u, v, "o", ms=11, mfc="none", mew=1.2, color=TARGET, zorder=6, clip_on=False)
+
+
+def _of_one(steps: Sequence[Step]) -> list[Step]:
+    """Return the steps to the best design, without those to other answers."""
+    return [step for step in steps if step.phase != ANSWERS]
 
 
 def _points(result: Result, goals: Goals) -> Array:

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { changesOf, placedLike, withDesign } from "../../../src/simulearn/studio/page/service/designs.js";
-import { bestSoFar, roundUp, stagesOf } from "../../../src/simulearn/studio/page/service/steps.js";
+import { answersOf, bestOf, bestSoFar, roundUp, stagesOf } from "../../../src/simulearn/studio/page/service/steps.js";
 import { addGoal } from "../../../src/simulearn/studio/page/document/goals.js";
 import { frozen, square } from "./support.mjs";
 
@@ -74,4 +74,34 @@ test("stages are the different designs in their order; the best is the last", ()
   assert.equal(stages.at(-1).result, "shape");
   const many = Array.from({ length: 500 }, (_, n) => step(n, 9, { ratio: n / 1000 }));
   assert.ok(stagesOf(grid, many, best, null).length <= 61);
+});
+
+test("steps to other answers are neither on the curve nor among the stages", () => {
+  const { grid } = square();
+  const steps = [
+    step(1, 9), step(2, 5, { ratio: 0.25 }), step(3, 7, { phase: -2, ratio: 0.5 }), step(4, 8, { phase: -2, ratio: 1 }),
+  ];
+  assert.deepEqual(bestSoFar(steps), { points: [[1, 9], [2, 9], [2, 5], [2, 5]], corrections: [] });
+  assert.equal(bestOf(grid, steps).error_mm, 5);
+  const best = { ...bestOf(grid, steps), grid: steps[1].grid };
+  assert.deepEqual(stagesOf(grid, steps, best, null).map(({ error }) => error), [9, 5]);
+});
+
+test("several answers have what is needed to choose one; a single one is no choice", () => {
+  const { grid } = square();
+  const one = {
+    grid, error_mm: 0.4, error_fea_mm: 0.5, actuators: 3, actuator_mm: 90, print_seconds: 3000, on_front: true,
+    probability: { together: 0.7 },
+  };
+  const other = { ...one, error_fea_mm: null, print_seconds: null, on_front: false, probability: undefined };
+  const shape = {};
+  const [first, second] = answersOf(grid, { answers: [one, other] }, shape);
+  assert.deepEqual(first, {
+    grid, error: 0.5, byFea: true, actuators: 3, length: 90, seconds: 3000, within: 0.7, beaten: false, result: shape,
+  });
+  assert.deepEqual(second, {
+    grid, error: 0.4, byFea: false, actuators: 3, length: 90, seconds: null, within: null, beaten: true, result: null,
+  });
+  assert.deepEqual(answersOf(grid, { answers: [one] }, shape), []);
+  assert.deepEqual(answersOf(grid, {}, shape), []);
 });

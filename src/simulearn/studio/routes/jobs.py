@@ -189,9 +189,11 @@ def checked(task: Task, settings: Settings) -> Task:
     engine_of(task.engine)
     method(task.method)
     Space.of(task.start, task.free)
+    limits = task.limits
     most = {"seconds": settings.job_seconds, "iterations": MOST_ITERATIONS}
+    most["seconds"] *= limits.seconds / limits.seconds_in_all
     for name, limit in most.items():
-        given = getattr(task.limits, name)
+        given = getattr(limits, name)
         if given > limit:
             text = f"limits.{name} is {given:g}; at most {limit:g} can be had here"
             raise InputError(text, "task", f"limits.{name}")
@@ -204,7 +206,8 @@ def search(task: Task, simulations: Simulations, job: Job) -> Answer:
 
     def note(step: Step) -> None:
         job.add_step({**step.row(), "grid": grid_to_dict(step.grid(start))})
-        share = max(step.iteration / limits.iterations, step.seconds / limits.seconds)
+        counted = 0.0 if limits.answers > 1 else step.iteration / limits.iterations
+        share = max(counted, step.seconds / limits.seconds_in_all)
         job.report(min(100, round(100 * share)), 100)
 
     simulations.warm()

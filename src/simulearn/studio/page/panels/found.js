@@ -6,6 +6,7 @@ import { discardSearch, hideStage, showStage } from "../service/search.js";
 import { takeDesign } from "../service/taking.js";
 import { notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
+import { Answers } from "./answers.js";
 import { button, iconButton } from "./controls.js";
 import { curve } from "./curve.js";
 import { facts } from "./fields.js";
@@ -94,6 +95,7 @@ export const Found = {
         best.agrees === false && note("warning", t("panels.beyondBound", { mm: mm(best.bound_mm) })),
         best.why_no_fea && note("warning", t("panels.whyNoFea", { why: sentence(best.why_no_fea) })),
         ...warnings(best.warnings),
+        state.search.answers.length > 1 && h(Answers, { take: takeStage }),
         h("div", { class: "row", onClickCapture: refocus }, [
           button(t(last ? "panels.take" : "panels.takeStep"), () => takeStage(stageOf(at.value)), {
             kind: "primary",

@@ -2,7 +2,8 @@
 
 import { h, reactive } from "/libraries/vue.js";
 import { mm, number } from "../service/format.js";
-import { searching, startSearch, stopSearch } from "../service/search.js";
+import { searching, startSearch, stopSearch, timesAsLong } from "../service/search.js";
+import { ANSWERS as OTHERS, ofBest } from "../service/steps.js";
 import { stale, state } from "../store.js";
 import { t } from "../text/text.js";
 import { button } from "./controls.js";
@@ -14,8 +15,9 @@ import { note, problemNote, Reader, reasonOf } from "./notes.js";
 const LIMIT = 30; // s that a search usually may take
 const LEAST = 1; // s
 const MOST = 600; // s, as the server
+const ANSWERS = 10; // that can be wanted here
 
-const wishes = reactive({ joints: true, actuators: true, seconds: LIMIT }); // kept while tabs change
+const wishes = reactive({ joints: true, actuators: true, seconds: LIMIT, answers: 1 }); // kept while tabs change
 
 function checkbox(label, name, disabled) {
   return h("label", { class: "checkbox" }, [
@@ -36,8 +38,17 @@ function form(again) {
     ]),
     h(NumberField, {
       label: t("panels.timeLimit"), name: t("panels.timeLimit"), unit: "s", value: wishes.seconds,
-      least: LEAST, most: MOST, step: 10, digits: 0, commit: (value) => { wishes.seconds = value; },
+      least: LEAST, most: MOST / timesAsLong(wishes.answers), step: 10, digits: 0, commit: (value) => { wishes.seconds = value; },
     }),
+    h(NumberField, {
+      label: t("panels.answersWanted"), name: t("panels.answersWanted"), value: wishes.answers,
+      least: 1, most: ANSWERS, step: 1, digits: 0,
+      commit: (value) => {
+        wishes.answers = Math.round(value);
+        wishes.seconds = Math.min(wishes.seconds, MOST / timesAsLong(wishes.answers));
+      },
+    }),
+    wishes.answers > 1 && h("p", { class: "note" }, t("panels.answersNote")),
     button(t(again ? "panels.searchAgain" : "panels.searchStart"), () => startSearch(wishes), {
       kind: again ? "" : "primary",
       disabled: nothing || !state.answer || stale.value || state.document.goals.length === 0,
@@ -47,9 +58,10 @@ function form(again) {
 }
 
 function running({ state: now, steps, until, passed, lost }) {
-  const last = steps.at(-1);
+  const last = ofBest(steps).at(-1);
+  const others = steps.at(-1)?.phase === OTHERS;
   const words = { queued: "searchQueued", stopping: "searchStopping" }[now]
-    ?? (last ? "searchRunning" : "searchReady");
+    ?? (others ? "searchOthers" : last ? "searchRunning" : "searchReady");
   return h("div", { class: "search-running" }, [
     last && h("p", { class: "measure-value numbers" }, mm(last.error_mm)),
     last && h("p", { class: "measure-name" }, t("panels.best")),
@@ -60,7 +72,7 @@ function running({ state: now, steps, until, passed, lost }) {
       "aria-valuenow": last ? Math.min(until, Math.round(passed)) : undefined,
     }, [h("span", { style: { width: `${Math.min(100, (100 * passed) / until)}%` } })]),
     last && h("p", { class: "search-facts numbers" }, [
-      h("span", `${number(last.designs)} ${t("panels.designsTried")}`),
+      h("span", `${number(steps.at(-1).designs)} ${t("panels.designsTried")}`),
       h("span", `${number(passed)} ${t("panels.ofSeconds", { s: `${number(until)} s` })}`),
     ]),
     h("p", { class: "note" }, t(`panels.${words}`)),

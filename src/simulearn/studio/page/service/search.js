@@ -6,6 +6,7 @@
 //   passed: seconds since it began, 0 while it gets ready,
 //   steps: {iteration, phase, seconds, designs, error_mm, grid} so far,
 //   best: {grid, error_mm, error_fea_mm, ...} and stages on the way there once it is done,
+//   answers: designs that differ, where more than one was wanted and found,
 //   problem: why it failed or ended early.
 
 import { taskOf } from "../document/task.js";
@@ -14,20 +15,25 @@ import { Problem, jobFrames, simulate, startOptimize } from "./api.js";
 import { placedLike, withDesign } from "./designs.js";
 import { runJob } from "./jobs.js";
 import { latest } from "./latest.js";
-import { bestOf, stagesOf } from "./steps.js";
+import { answersOf, bestOf, stagesOf } from "./steps.js";
 import { endPreview, showPreview } from "./preview.js";
 
 const SHAPES = latest(0);
+const SEVERAL = 3; // limits of time that several answers may take
 
 let job = null;
 
 /** Begin to search for a design that comes closer to the goals; an earlier search is forgotten. */
-export function startSearch({ joints, actuators, seconds }) {
+export function startSearch({ joints, actuators, seconds, answers }) {
   const { document } = state;
   const free = { ...(joints ? {} : { joints: [] }), ...(actuators ? {} : { actuators: [] }) };
-  const task = taskOf(document, { free, limits: { seconds } });
-  return follow(document, seconds, () => startOptimize(task));
+  const limits = answers > 1 ? { seconds, answers } : { seconds };
+  const task = taskOf(document, { free, limits });
+  return follow(document, seconds * timesAsLong(answers), () => startOptimize(task));
 }
+
+/** Return how many times the limit a search for so many answers may take, as the server has it. */
+export const timesAsLong = (answers) => (answers > 1 ? SEVERAL : 1);
 
 /** Follow a search again that the page followed before it was loaded anew. */
 export function resumeSearch({ id, document, until }) {
@@ -55,14 +61,15 @@ async function follow(document, seconds, begin) {
     if (!answer.result) return update({ state: "cancelled" });
     const best = { ...answer.result, grid: placedLike(document.grid, answer.result.grid) };
     const [shape] = await shapes(answer.id);
-    update({ state: "done", best, shape, stages: stagesOf(document.grid, answer.steps, best, shape) });
+    const stages = stagesOf(document.grid, answer.steps, best, shape);
+    update({ state: "done", best, shape, stages, answers: answersOf(document.grid, best, shape) });
   } catch (problem) {
     if (!(problem instanceof Problem)) throw problem;
     const steps = state.search?.key === key ? state.search.steps : [];
     if (steps.length < 2) return update({ state: "failed", problem });
     // What it had found by then is known here.
     const best = bestOf(document.grid, steps);
-    update({ state: "done", problem, best, stages: stagesOf(document.grid, steps, best, null) });
+    update({ state: "done", problem, best, stages: stagesOf(document.grid, steps, best, null), answers: [] });
   }
   return null;
 }
@@ -109,7 +116,7 @@ export function showStage(stage, label) {
   return SHAPES.ask((signal) => simulate([stage.grid], { materials, signal }), (results) => {
     if (!results?.[0].ok) return;
     [stage.result] = results;
-    if (state.search?.stages?.includes(stage)) show();
+    if (state.search?.stages?.includes(stage) || state.search?.answers?.includes(stage)) show();
   });
 }
 

@@ -2,8 +2,12 @@
 
 import { placedLike } from "./designs.js";
 
+export const ANSWERS = -2; // the phase in which other answers are looked for; see the library
 const MOST_POINTS = 300; // of the curve; more cannot be told apart
 const MOST_STAGES = 60; // of more designs, every second or third is left out
+
+/** Return the steps to the best design, without those to other answers. */
+export const ofBest = (steps) => steps.filter(({ phase }) => phase !== ANSWERS);
 
 /** Return the least of 1, 2, 3, 4, 6, 8, 10 times a power of ten that is at least `most`. */
 export function roundUp(most) {
@@ -18,7 +22,8 @@ export function roundUp(most) {
  * corrections: the numbers of designs at which finite elements moved the targets; the error then is
  * measured against those, and begins anew.
  */
-export function bestSoFar(steps) {
+export function bestSoFar(all) {
+  const steps = ofBest(all);
   const points = [];
   const corrections = [];
   let [best, phase] = [Infinity, steps[0]?.phase];
@@ -38,7 +43,8 @@ export function bestSoFar(steps) {
  *
  * grid: the design that it began with. shape: of the best one, or null.
  */
-export function stagesOf(grid, steps, best, shape) {
+export function stagesOf(grid, all, best, shape) {
+  const steps = ofBest(all);
   const changed = steps.filter((step, n) => n === 0 || differs(step.grid, steps[n - 1].grid));
   const stride = Math.ceil(changed.length / MOST_STAGES);
   const stages = changed.filter((step, n) => n % stride === 0).map((step) => ({
@@ -50,13 +56,29 @@ export function stagesOf(grid, steps, best, shape) {
 }
 
 /** Return the result of a search that ended without one: the design of its last step, not checked. */
-export function bestOf(grid, steps) {
+export function bestOf(grid, all) {
+  const steps = ofBest(all);
   const last = steps.at(-1);
   return {
     grid: placedLike(grid, last.grid), start_mm: steps[0].error_mm, error_mm: last.error_mm,
     error_fea_mm: null, apart_mm: null, agrees: null, designs: last.designs, seconds: last.seconds,
     warnings: [],
   };
+}
+
+/** Return the several designs that a search answers with, to be shown and taken; [] of a single one.
+ *
+ * Each is {grid, error, byFea, actuators, length: mm, seconds: to print or null, within: share of prints
+ * or null, beaten: whether another is as good in everything, result: its shape once it is known}.
+ */
+export function answersOf(grid, best, shape) {
+  const answers = best.answers ?? [];
+  if (answers.length < 2) return [];
+  return answers.map((one, k) => ({
+    grid: placedLike(grid, one.grid), error: one.error_fea_mm ?? one.error_mm, byFea: one.error_fea_mm !== null,
+    actuators: one.actuators, length: one.actuator_mm, seconds: one.print_seconds,
+    within: one.probability?.together ?? null, beaten: !one.on_front, result: k === 0 ? shape : null,
+  }));
 }
 
 function differs(a, b) {

@@ -1,0 +1,338 @@
+"""Several answers: after the best design, others that come to the goals too and truly differ.
+
+The archive has kept the best of each kind among all designs that the search scored. The search
+begins again a few times, in turn with ratios drawn anew and with one actuator less than the good
+design that has the fewest, so that there are some that are cheaper. Then designs are chosen: the
+closest, the one with the least actuators, the one with the shortest beams, and those farthest from
+these; and all are checked by finite elements, as many at once as there are cores.
+
+What comes after the first answer takes at most as long again as the limit; the new beginnings take
+half of the time that the first answer took, unless there are too few good designs.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import replace
+from operator import attrgetter
+from time import monotonic
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message, stop_if
+from simulearn.files import cores
+from simulearn.grid import Grid, check_designs
+from simulearn.inverse.archive import Archive
+from simulearn.inverse.checking import Check, check
+from simulearn.inverse.front import Answer, actuators_of, choice, on_front
+from simulearn.inverse.goals import Goals
+from simulearn.inverse.keeping import ANSWERS
+from simulearn.inverse.prints import probability_of
+from simulearn.inverse.probability import Probability
+from simulearn.inverse.problem import OutOfTime, Problem, Scored, Until
+from simulearn.inverse.space import Space
+from simulearn.learn.common.model import Designs
+from simulearn.material import load_material
+
+if TYPE_CHECKING:
+    from simulearn.fabricate import Printer
+    from simulearn.inverse.search import Search
+
+Added = tuple[Check, Probability | None, list[Message]]
+
+PRINTER = "prusa-mk4"  # whose print times are told where no printer is named
+SLACK = 0.015  # of the dimension, by which another answer may be worse than the best
+FAR = 3.0  # times that, where there are not enough; it is said of them
+OFF = 2.0  # least distances, by which ratios drawn anew stay away from what is there
+BEGINNINGS = 4
+DRAWS = 5  # of ratios, until a design has an answer
+LATE = "the time was over before it was checked"
+SHARE = 0.5  # of the time that the first answer took, for all new beginnings together
+
+
+def add_answers(
+    search: Search, space: Space, goals: Goals, best: Check, of_prints: Probability | None
+) -> Added:
+    """Look for other answers than the best, and give the search all of them.
+
+    Args:
+        search: that came to the best design and has an archive.
+        space: of the designs.
+        goals: what is wanted.
+        best: the best design so far.
+        of_prints: how often prints of it meet the goals, if that is known.
+
+    Returns:
+        The best of all answers, how often prints of it meet the goals, and warnings.
+
+    Raises:
+        CancelledError: the search was stopped; it has the answers so far.
+    """
+    assert search.archive is not None
+    several = _Several(search, space, goals, best, search.archive)
+    chosen = [best]
+    try:
+        several.begin_again()
+        chosen = several.chosen()
+        several.check(chosen)
+        return several.finished(chosen, of_prints)
+    except (KeyboardInterrupt, CancelledError):
+        search.answers = several.compared([several.known(one) for one in chosen])
+        raise
+
+
+class _Several:
+    """The search for other answers; see `add_answers`."""
+
+    def __init__(
+        self, search: Search, space: Space, goals: Goals, best: Check, archive: Archive
+    ) -> None:
+        self.search, self.space, self.goals, self.best = search, space, goals, best
+        self.archive, self.limits = archive, search.task.limits
+        # Up to this error by the engine, a design may be an answer.
+        self.slack = SLACK * space.grid.dimension
+        self.good = best.error_mm + self.slack
+        self.first = search.seconds
+        self.deadline = monotonic() + self.limits.seconds_in_all - self.first
+        # What an earlier run came to; and the best, which nothing of its kind may replace.
+        earlier = [step for step in search.steps if step.phase == ANSWERS]
+        self.begun_again = len(earlier)
+        known = [(step.grid(space.grid), step.error_mm) for step in earlier]
+        for grid, error in [*known, (best.grid, 0.0)]:
+            one = grid.centred
+            archive.add(one.joints[None], one.actuators[None], np.array([error]))
+
+    def begin_again(self) -> None:
+        """Search from other beginnings; the archive keeps what is found."""
+        each = SHARE * self.first / BEGINNINGS
+        while monotonic() + each + self._checking < self.deadline:
+            enough = (self.archive.errors <= self.good).sum() >= self.limits.answers
+            if self.begun_again >= BEGINNINGS and enough:
+                return
+            self._from_another(monotonic() + each)
+            self.begun_again += 1
+
+    @property
+    def _checking(self) -> float:
+        """Seconds that the checks of all answers will take."""
+        # Two at once are not done in half of the time.
+        return 0.75 * self.search.checking * (self.limits.answers - 1)
+
+    def _from_another(self, until: float) -> None:
+        """Search from another beginning, and note what it came to."""
+        search = self.search
+        space, words, far = self.space, "ratios drawn anew", OFF
+        if self.begun_again % 2:
+            space, words, far = *self._with_less(), 1.0
+        problem = search.problem(space, self.goals, until)
+        try:
+            start = self._start(problem)
+            problem.allowed, problem.best = self._elsewhere(far), None
+            for _ in search.method(problem, start):
+                problem.going()
+        except OutOfTime:
+            pass
+        except CancelledError:  # within a simulation; by the deadline, or by the user
+            stop_if(search.cancel)
+        if problem.best is not None:
+            self._note(space, problem.best, problem.designs, words)
+
+    def _start(self, problem: Problem) -> Scored:
+        """Return a design to begin with: that of a space with less, or one with other ratios."""
+        x, a = problem.space.start
+        if problem.space is self.space:
+            for _ in range(DRAWS):
+                drawn = problem.space.nearest(x, 2 * problem.source.random(len(a)) - 1)
+                start = problem.scored(x, drawn)
+                if np.isfinite(start.error):
+                    return start
+        return problem.scored(x, a)
+
+    def _elsewhere(self, far: float) -> Callable[[Designs], NDArray[np.bool_]]:
+        """Return which designs are far from the best one and from what new beginnings came to.
+
+        Args:
+            far: how many times the least distance.
+        """
+        steps = [step for step in self.search.steps if step.phase == ANSWERS]
+        there = [self.best.grid.centred, *(step.grid(self.space.grid) for step in steps)]
+        joints = np.array([grid.joints for grid in there])
+        ratios = np.array([grid.actuators for grid in there])
+        least, distance = far * self.archive.least, self.archive.distance
+
+        def elsewhere(designs: Designs) -> NDArray[np.bool_]:
+            away = distance(designs.flat, designs.actuators, joints, ratios)
+            return np.asarray(away.min(axis=1) >= least)
+
+        return elsewhere
+
+    def _with_less(self) -> tuple[Space, str]:
+        """Return the space in which the good design with the least actuators has one less.
+
+        Its beginning lacks the one without which the design is closest to the goals, the next time
+        the one without which it is second closest.
+        """
+        archive, space = self.archive, self.space
+        good = np.flatnonzero(archive.errors <= self.good)
+        k = good[np.abs(archive.ratios[good]).sum(axis=1).argmin()]
+        whole = space.grid
+        grid = Grid(archive.joints[k], whole.beams, archive.ratios[k], whole.fixed, whole.material)
+        x, a = space.point(grid)
+        active = np.flatnonzero(a)
+        if len(active) < 2:
+            return space, "as it is"
+        less = np.repeat(a[None], len(active), axis=0)
+        less[np.arange(len(active)), active] = 0.0
+        problem = self.search.problem(space, self.goals, np.inf)
+        errors = problem.errors(np.repeat(x[None], len(active), axis=0), less)
+        place = np.argsort(errors, kind="stable")[self.begun_again // 2 % len(active)]
+        start = space.grid_at(x, less[place])
+        groups = [space.groups[q] for q in active if q != active[place]]
+        beams = sorted(b for group in groups for b in group)
+        free = self.search.task.free.model_copy(update={"actuators": beams})
+        words = f"with {np.count_nonzero(start.actuators)} actuators"
+        return replace(Space.of(start, free), training=space.training), words
+
+    def _note(self, space: Space, now: Scored, designs: int, words: str) -> None:
+        last = self.search.steps[-1]
+        self.search.note(space, now, last.iteration, last.designs + designs, ANSWERS, words)
+
+    def chosen(self) -> list[Check]:
+        """Return the designs to answer with, the best first, as far as they are known."""
+        archive, grid = self.archive, self.space.grid
+        joints, ratios = archive.joints, archive.ratios
+        material = load_material(grid.material)
+        net = check_designs(grid.beams, grid.fixed, joints, ratios, material).net_lengths
+        costs = np.column_stack([(np.abs(ratios) * net).sum(axis=1), net.sum(axis=1)])
+        distances = archive.distance(joints, ratios, joints, ratios)
+        count, errors = self.limits.answers, archive.errors
+        picked = choice(errors, costs, distances, self.good, count)
+        far = np.flatnonzero((errors > self.good) & (errors <= self.good + FAR * self.slack))
+        picked += far[np.argsort(errors[far], kind="stable")].tolist()
+        checks = [self.best]
+        for k in picked[1:count]:
+            one = Grid(joints[k], grid.beams, ratios[k], grid.fixed, grid.material)
+            checks.append(self.known(Check(one, float(archive.errors[k]), why=LATE, phase=ANSWERS)))
+        return checks
+
+    def known(self, one: Check) -> Check:
+        """Return the check of a design by finite elements, or what is given if there is none."""
+        return self.search.known_check(one.grid) or one
+
+    def check(self, chosen: list[Check]) -> None:
+        """Put checks by finite elements in the places of those that have none, while time lasts."""
+        waiting = [k for k, one in enumerate(chosen) if one.error_fea_mm is None]
+        if not waiting:
+            return
+        search, space = self.search, self.space
+        problem = search.problem(space, self.goals, np.inf)
+        x, a = map(np.array, zip(*(space.point(chosen[k].grid) for k in waiting), strict=True))
+        points = problem.points(x, a)
+        for t, k in enumerate(waiting):
+            error = float(problem.error(points[t]))
+            self._note(space, Scored(x[t], a[t], points[t], error), 1, f"answer {k + 1} is checked")
+        stop = _Either(search.cancel)
+        rest = (self.goals, search.engine, stop, Until(stop, self.deadline), ANSWERS)
+        with ThreadPoolExecutor(min(cores(), len(waiting))) as pool:
+            futures = {
+                pool.submit(check, chosen[k].grid, points[t], *rest): k
+                for t, k in enumerate(waiting)
+            }
+            try:
+                for future in as_completed(futures):
+                    one = chosen[futures[future]] = future.result()
+                    if one.error_fea_mm is not None:
+                        search.checks.append(one)
+            finally:  # whatever ends this early ends the others, too
+                stop.set()
+                pool.shutdown(cancel_futures=True)
+
+    def finished(self, chosen: list[Check], of_prints: Probability | None) -> Added:
+        """Give the search its answers with all that is to be known of them."""
+        search = self.search
+        warnings: list[Message] = []
+        answers = self.compared(chosen)
+        prints = [of_prints] * len(answers)
+        if of_prints is not None:
+            rest = answers[1:]
+            prints[1:] = [probability_of(search, a.check, self.goals, warnings) for a in rest]
+        name, times = print_times([one.grid for one in answers], search.printer, warnings)
+        answers = on_front(
+            replace(one, probability=share, printer=name, print_seconds=time)
+            for one, share, time in zip(answers, prints, times, strict=True)
+        )
+        best = answers[0]
+        if not search.task.robust:
+            best = min(answers, key=attrgetter("error"))
+        search.answers = (best, *(one for one in answers if one is not best))
+        return best.check, best.probability, [*warnings, *self._wanting()]
+
+    def _wanting(self) -> list[Message]:
+        """Return warnings where there are fewer answers than wanted, or some are much worse."""
+        answers, count = self.search.answers, self.limits.answers
+        more = "more seconds, or more that is free to change, may help"
+        messages = []
+        if len(answers) < count:
+            text = f"{len(answers)} of {count} answers were found that differ; {more}"
+            messages.append(Message("answers-fewer", "limits.answers", text))
+        far = [str(k) for k, one in enumerate(answers, 1) if one.check.error_mm > self.good]
+        if far:
+            text = f"answers {', '.join(far)} stay more than {self.good:.2f} mm away; {more}"
+            messages.append(Message("answers-far", "limits.answers", text))
+        return messages
+
+    def compared(self, checks: list[Check]) -> tuple[Answer, ...]:
+        """Return designs as answers; print times and probabilities are not known yet."""
+        away = self.archive.distance.between
+        answers = []
+        for one in checks:
+            others = [away(one.grid, other.grid) for other in checks if other is not one]
+            nearest = min(others, default=None)
+            answers.append(Answer(one, *actuators_of(one.grid), nearest))
+        return on_front(answers)
+
+
+def print_times(
+    grids: Sequence[Grid], printer: Printer | str | None, warnings: list[Message]
+) -> tuple[str, list[float | None]]:
+    """Return the name of a printer, and how long (s) it prints each grid, heating not counted.
+
+    None stands for what it cannot print.
+
+    Args:
+        grids: each printed alone.
+        printer: on what, or its name; a common one if None.
+        warnings: where a reason is added.
+    """
+    from simulearn.fabricate import load_printer, prepare
+
+    machine = printer or PRINTER
+    if isinstance(machine, str):
+        machine = load_printer(machine)
+    times: list[float | None] = []
+    for grid in grids:
+        try:
+            times.append(prepare([grid], machine).estimate.seconds)
+        except (InputError, ComputationError) as error:
+            times.append(None)
+            text = f"how long an answer takes to print is not known: {error}"
+            why = Message("answers-print", "printer", text)
+            warnings += [] if why in warnings else [why]
+    return machine.name, times
+
+
+class _Either:
+    """A token that is set here, or by whoever can cancel all of it."""
+
+    def __init__(self, other: Cancel | None) -> None:
+        self._own, self._other = threading.Event(), other
+
+    def set(self) -> None:
+        self._own.set()
+
+    def is_set(self) -> bool:
+        return self._own.is_set() or (self._other is not None and self._other.is_set())
