@@ -72,8 +72,14 @@ def test_one_goal_may_be_of_many_vertices():
 
 
 def wanted_of(kind, joints, sections):
-    """Return a goal of a kind that the hidden design meets."""
+    """Return a goal of a kind that the hidden design meets, or several."""
     centres = joints.mean(axis=1)
+    if kind == "free":  # somewhere else, and turned
+        turn = [[0, -1, 0], [0, 0, 1], [-1, 0, 0]]
+        return [
+            {"vertex": ["joint", k, "centre"], "target": (turn @ place + 70).tolist()}
+            for k, place in enumerate(centres)
+        ]
     if kind == "surface":
         A = np.c_[np.ones(4), centres[:, 0], centres[:, 1], centres[:, 0] * centres[:, 1]]
         a, b, c, d = np.linalg.solve(A, centres[:, 2])
@@ -105,8 +111,9 @@ def test_a_task_of_each_kind_is_solved(kind, beams, hidden):
     if kind == "away_from":  # a bar under the far corner, which is to rise
         goal = {"away_from": {"heights": "-3", "x": [30, 90], "y": [30, 90]}, "clearance": 1}
     else:
-        goal = wanted_of("surface" if kind == "free" else kind, joints, sections)
-    task = task_from_dict(task_of(goal, pose="free" if kind == "free" else "fixed"))
+        goal = wanted_of(kind, joints, sections)
+    some = goal if isinstance(goal, list) else [goal]
+    task = task_from_dict(task_of(*some, pose="free" if kind == "free" else "fixed"))
     goals, space = task.aims, Space.of(task.start, Free())
     problem = Problem(space, goals, places(beams, goals), model=beams.bundle.model)
     start = problem.scored(*space.start)
