@@ -179,6 +179,10 @@ def test_a_free_pose_brings_a_shape_to_where_it_fits(kind):
     assert begun.error(points) < (1e-6 if kind == "point" else 0.6)
     placed = begun.place(points)(points)
     np.testing.assert_allclose(placed, begun.placed(points), atol=1e-9)
+    # Each of several shapes has a motion of its own.
+    other = Place.about_z(9.0)(points) + np.array([1.0, 2, 0])
+    both = begun.repeated(2).error(np.concatenate([points, other]))
+    assert both == pytest.approx((begun.error(points) + begun.error(other)) / 2)
     # Moving the shape as a whole changes nothing once the pose is found.
     moved = Place.about_z(3.0)(points) + np.array([0.5, 0, -0.5])
     assert begun.error(moved) == pytest.approx(float(begun.error(points)), abs=1e-3)

@@ -40,7 +40,9 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
     known = np.all((faces >= 0) & (faces < len(vertices)), axis=1)
     sound = known & np.all(there[np.where(known[:, None], faces, 0)], axis=1)
-    faces = _kept(faces, sound, "have corners that are no finite numbers", "surface-not-finite", messages)
+    faces = _kept(
+        faces, sound, "have corners that are no finite numbers", "surface-not-finite", messages
+    )
     vertices, faces = _merged(vertices, faces)
     corners = vertices[faces]
     double = np.linalg.norm(
