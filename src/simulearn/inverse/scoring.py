@@ -5,6 +5,7 @@ design that an engine has no answer for has no place, and a search does without 
 """
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from simulearn.simulate import Failure, Simulator
 from simulearn.simulate.learned import Learned
 
 Array = NDArray[np.float64]
+Collides = Callable[[Designs], bool]  # a single design -> whether parts of it collide
 Places = Callable[[Designs], Array]  # designs -> (T, V, 3), NaN where there is no answer
 
 
@@ -30,24 +32,39 @@ def places(engine: Simulator, goals: Goals, cancel: Cancel | None = None) -> Pla
     """
     if isinstance(engine, Learned):
         return _together(engine, goals)
-    return _one_by_one(engine, goals, cancel)
+    return _one_by_one(engine, goals, cancel, {})
 
 
-def colliding(engine: Simulator, cancel: Cancel | None = None) -> Callable[[Designs], bool]:
-    """Return the function that says whether parts of a single design run through each other.
+def places_and_collisions(
+    engine: Simulator, goals: Goals, cancel: Cancel | None = None
+) -> tuple[Places, Collides]:
+    """Return `places`, and the function that says whether parts of a design collide.
 
-    It simulates all frames; a design without an answer does not collide.
+    A learned engine, which gives places by the last frame alone, simulates the design's frames for
+    that; others have looked when they gave its places. A design without an answer does not collide.
 
     Args:
         engine: the simulator.
-        cancel: stops it; the function raises CancelledError.
+        goals: whose vertices.
+        cancel: stops a simulation; the functions raise CancelledError.
     """
+    if isinstance(engine, Learned):
+        return _together(engine, goals), partial(_looked_at, engine, cancel)
+    known: dict[bytes, bool] = {}
 
     def collides(designs: Designs) -> bool:
-        (outcome,) = engine.simulate(grids(designs), cancel=cancel)
-        return not isinstance(outcome, Failure) and bool(outcome.collisions)
+        return known.get(_key(designs, 0), False)
 
-    return collides
+    return _one_by_one(engine, goals, cancel, known), collides
+
+
+def _looked_at(engine: Simulator, cancel: Cancel | None, designs: Designs) -> bool:
+    (outcome,) = engine.simulate(grids(designs), cancel=cancel)
+    return not isinstance(outcome, Failure) and bool(outcome.collisions)
+
+
+def _key(designs: Designs, t: int) -> bytes:
+    return designs.flat[t].tobytes() + designs.actuators[t].tobytes()
 
 
 def _together(engine: Learned, goals: Goals) -> Places:
@@ -63,13 +80,16 @@ def _together(engine: Learned, goals: Goals) -> Places:
     return together
 
 
-def _one_by_one(engine: Simulator, goals: Goals, cancel: Cancel | None) -> Places:
+def _one_by_one(
+    engine: Simulator, goals: Goals, cancel: Cancel | None, known: dict[bytes, bool]
+) -> Places:
     def one_by_one(designs: Designs) -> Array:
         outcomes = engine.simulate(grids(designs), cancel=cancel)
         points = np.full((len(designs), len(goals.vertices), 3), np.nan)
         for t, outcome in enumerate(outcomes):
             if not isinstance(outcome, Failure):
                 points[t] = goals.points(outcome.joints[-1], outcome.beams[-1])
+                known[_key(designs, t)] = bool(outcome.collisions)
             elif outcome.invalid:
                 raise outcome.error
         return points

@@ -33,7 +33,7 @@ from simulearn.inverse.keeping import ANSWERS, Past, Step
 from simulearn.inverse.prints import regard_prints, without_scatter
 from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, Until, drawing
 from simulearn.inverse.reach import not_near, out_of_reach
-from simulearn.inverse.scoring import colliding, places
+from simulearn.inverse.scoring import places_and_collisions
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Limits, Task
 from simulearn.simulate import Simulator
@@ -242,16 +242,18 @@ class Search:
     def problem(self, space: Space, goals: Goals, until: float) -> Problem:
         """Return the problem to come to goals by the engine, until a time."""
         model = self.engine.bundle.model if isinstance(self.engine, Learned) else None
+        places, collides = places_and_collisions(self.engine, goals, Until(self.cancel, until))
         return Problem(
             space,
             goals,
-            places(self.engine, goals, Until(self.cancel, until)),
+            places,
             model=model,
             source=drawing(len(self.steps)),  # other numbers in each phase and after each stop
             until=until,
             cancel=self.cancel,
             collides=colliding(self.engine, Until(self.cancel, until)),
             archive=self.archive,
+            collides=collides,
         )
 
     def _searched(self, space: Space, goals: Goals, start: Scored, phase: int) -> Scored:
