@@ -51,7 +51,7 @@ def pretended(job):
         grid_to_dict(grid),
         joints.tolist(),
         np.repeat(middles[:, None], 3, axis=1).tolist(),
-        np.zeros_like(joints).tolist(),
+        np.zeros((len(joints) + len(middles), 3)).tolist(),
         True,
         off,
         off,

@@ -43,8 +43,12 @@ def test_the_start_has_actuators_where_the_patch_is_curved():
     material = load_material("pla-hot-water")
     points, normals = CYLINDER.targets[0], CYLINDER.normals[CYLINDER.modules[0]]
     grid = CYLINDER.lattice
-    joints, ratios = start(points, normals, grid, material, "beams", None)
+    begin = start(points, normals, grid, material, "beams", None)
+    joints, ratios = begin.joints, begin.ratios
     along = grid.joints[grid.beams[:, 1], 0] > grid.joints[grid.beams[:, 0], 0]
     assert (ratios[along] < -0.2).all()
     assert (np.abs(ratios[~along]) < 0.1).all()
     assert np.linalg.norm(joints, axis=1).max() < 1.2 * np.hypot(100 * np.pi / 8, 60)
+    radius = np.linalg.norm(begin.middles[:, :2], axis=1)
+    assert (np.abs(radius[~along] - 100) < 0.5).all()
+    assert ((radius[along] > 100) & (radius[along] < 105)).all()  # farther than a circle

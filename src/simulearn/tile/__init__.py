@@ -6,9 +6,10 @@ from simulearn.tile.chartfile import chart_from_dict, read_chart
 from simulearn.tile.charts import Chart
 from simulearn.tile.patches import Tiling, from_chart
 from simulearn.tile.quads import from_quads
-from simulearn.tile.running import Settings, Stage, Tiled, tile
+from simulearn.tile.running import tile
 from simulearn.tile.shapes import between, heights, interpolated, revolution
 from simulearn.tile.source import read_tiling
+from simulearn.tile.tiled import Settings, Stage, Tiled
 from simulearn.tile.unrolling import unrolled
 
 __all__ = [

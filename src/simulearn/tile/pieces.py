@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from simulearn.assembly import Assembly, Part
 from simulearn.grid import Grid
-from simulearn.tile.running import Tiled
+from simulearn.tile.tiled import Tiled
 
 Array = NDArray[np.float64]
 

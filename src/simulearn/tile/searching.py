@@ -3,6 +3,9 @@
 What the engine gets wrong hardly changes from a design to its neighbours. So the search is for
 targets that are moved by what finite elements found out about the last design, and ends with
 another check. Where the module lies is free.
+
+Joints alone leave open how beams run between them. So the middles of beams are wanted where the
+patch's curvature has them, too, but count less.
 """
 
 import hashlib
@@ -17,7 +20,7 @@ from numpy.typing import NDArray
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict, lattice
 from simulearn.inverse.checking import check
-from simulearn.inverse.goals import Goals
+from simulearn.inverse.goals import Goals, Vertex
 from simulearn.inverse.newton import descent
 from simulearn.inverse.problem import OutOfTime, Problem, Scored
 from simulearn.inverse.relaxing import relaxed, rounded
@@ -32,13 +35,14 @@ from simulearn.tile.starting import start
 
 Array = NDArray[np.float64]
 
-VERSION = 3  # raise it when a search answers differently, so that older answers are not taken
+VERSION = 1  # raise it when a search answers differently, so that older answers are not taken
 GOOD = 0.05  # mm by the engine, where a search ends
 CORRECTED = 0.15  # mm by finite elements, above which the search may go on from a check
 WORTH = 0.3  # of the error, that the engine must be off by for that
 TRIES = 3  # starts where an answer is not near
-NEAR = 0.4  # mm
+NEAR = 0.25  # mm
 SECONDS = 120.0  # of one search, at most
+MIDDLE = 0.05  # weight of the middle of a beam; a joint's is 1 or more
 SPREAD = 0.3  # of ratios, of starts after the first
 
 
@@ -56,7 +60,8 @@ class ModuleJob:
         model: of the engine; None: its default.
         ratio: step of the ratios.
         grid: the design to go on from, as in a grid file; None begins with the curvature.
-        shift: (K, 3) mm, from finite elements to the engine, of that design.
+        shift: (K + B, 3) mm, of joints and middles of beams from finite elements to the engine, of
+            that design.
         corrections: how often to go on from a check.
     """
 
@@ -88,7 +93,7 @@ class ModuleAnswer:
         grid: the design, as in a grid file; None where there is none.
         joints: (K, 3) mm, centres, seen from the fixed joint; by finite elements where `checked`.
         beams: (B, 3, 3) mm, centres of sections start, middle, end; likewise.
-        shift: (K, 3) mm, from finite elements to the engine.
+        shift: (K + B, 3) mm, of joints and middles from finite elements to the engine.
         checked: whether finite elements answered.
         error_mm: mean distance from the targets, in the best place.
         engine_mm: the same by the engine.
@@ -131,11 +136,21 @@ class _Search:
         self.material = Material.model_validate(job.material)
         self.targets, self.weights = np.array(job.targets), np.array(job.weights)
         self.weights = self.weights / self.weights.sum()
+        self.lattice = lattice(job.cells, 1.0)
+        self.start = start(
+            self.targets,
+            np.array(job.normals),
+            self.lattice,
+            self.material,
+            job.engine,
+            job.model,
+        )
+        self.goals = self._goals()
         self.designs = self.checks = 0
 
     def run(self) -> ModuleAnswer:
         job = self.job
-        shift = np.zeros_like(self.targets) if job.shift is None else np.array(job.shift)
+        shift = np.zeros((len(self.goals), 3)) if job.shift is None else np.array(job.shift)
         if job.grid is None:
             space, now = self._begun(shift)
         else:
@@ -157,17 +172,21 @@ class _Search:
 
     def _begun(self, shift: Array) -> tuple[Space, Scored]:
         """Return the best design of a few starts, and its space."""
-        job = self.job
-        plain = lattice(job.cells, 1.0)
-        joints, ratios = start(
-            self.targets, np.array(job.normals), plain, self.material, job.engine, job.model
+        plain, job = self.lattice, self.job
+        flat = Grid(
+            self.start.joints,
+            plain.beams,
+            np.zeros(len(plain.beams)),
+            plain.fixed,
+            self.material,
         )
-        flat = Grid(joints, plain.beams, np.zeros(len(plain.beams)), plain.fixed, self.material)
         space = self._space(flat)
         source = np.random.default_rng(0)
         best: Scored | None = None
         for k in range(TRIES):
-            begin = ratios if k == 0 else ratios + SPREAD * source.standard_normal(len(ratios))
+            begin = self.start.ratios
+            if k:
+                begin = begin + SPREAD * source.standard_normal(len(begin))
             now = self._nearer(space, space.start[0], np.clip(begin, -1, 1), shift)
             if best is None or now.error < best.error:
                 best = now
@@ -187,12 +206,12 @@ class _Search:
 
     def _nearer(self, space: Space, x: Array, a: Array, shift: Array) -> Scored:
         """Return the best design near a point, wherever it is put."""
-        centres = Goals.of(Goals.centres(self.targets).vertices, self.targets, self.weights)
-        free = Goals.together(centres.parts, pose=Place()).shifted(shift)
+        free = self.goals.shifted(shift)
         simulated = places(self.engine, free)
         points = simulated(space.designs(x[None], a[None]))[0]
         if not np.isfinite(points).all():  # as flat as it is printed
-            points = np.c_[space.designs(x[None], a[None]).flat[0], np.zeros(len(points))]
+            flat = np.c_[space.designs(x[None], a[None]).flat[0], np.zeros(len(self.targets))]
+            points = np.concatenate([flat, flat[self.lattice.beams].mean(axis=1)])
         model = self.engine.bundle.model
         problem = Problem(space, free.begun(points), simulated, model=model, until=self.until)
         problem.best = problem.scored(x, space.nearest(x, a))
@@ -209,31 +228,36 @@ class _Search:
         self.designs += problem.designs
         return problem.best
 
-    def _fitted(self, points: Array) -> tuple[Place, float]:
-        """Return the best place of joints (K, 3), and how far they are from their targets there."""
-        if not np.isfinite(points).all():
-            return Place(), np.inf
+    def _goals(self) -> Goals:
+        """Return what is wanted of joints and middles, wherever the module is put."""
+        joints = Goals.centres(self.targets).vertices
+        middles = tuple(Vertex("beam", b, section=1) for b in range(len(self.lattice.beams)))
+        counts = np.r_[self.weights * len(joints), np.full(len(middles), MIDDLE)]
+        wanted = np.concatenate([self.targets, self.start.middles])
+        return Goals.together(Goals.of((*joints, *middles), wanted, counts).parts, pose=Place())
+
+    def _away(self, points: Array) -> float:
+        """Return how far joints (K, 3) are from their targets in the best place, mm."""
         place = Place.fitting(points, self.targets)
         away = np.linalg.norm(place(points) - self.targets, axis=1)
-        return place, float(away @ self.weights)
+        return float(away @ self.weights)
 
     def _checked(self, grid: Grid, points: Array, shift: Array) -> ModuleAnswer:
         """Return a design with what finite elements say of it."""
         self.checks += 1
-        one = check(grid, points, Goals.centres(self.targets), self.engine)
+        one = check(grid, points, self.goals, self.engine)
         shape = one.shape
         if shape is None:
             raise ComputationError(one.why or "the design has no answer", "no-answer", "grid")
-        joints = shape.centres[-1] if one.fea is not None else points - shift
-        _, by_engine = self._fitted(points - shift)
-        _, error = self._fitted(joints)
+        by_engine = (points - shift)[: len(self.targets)]
+        joints = by_engine if one.fea is None else shape.centres[-1]
         return ModuleAnswer(
             grid_to_dict(grid),
             joints.tolist(),
             shape.beams[-1].mean(axis=2).tolist(),
             (shift if one.shift is None else one.shift).tolist(),
             one.fea is not None,
-            error,
-            by_engine,
+            self._away(joints),
+            self._away(by_engine),
             one.why,
         )

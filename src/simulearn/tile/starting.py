@@ -1,7 +1,8 @@
-"""A start from a patch's own curvature: how far each beam is to turn says how long its actuator is.
+"""What a patch's own curvature asks of its beams: their actuators, and how their middles rise.
 
 How far a beam turns by its ratio is measured once by the engine, on a grid whose beams along x are
-all alike: gravity, creep and the beams across are then in it.
+all alike: gravity, creep and the beams across are then in it. So is how far the middle of a beam
+rises above its chord, which is more than on a circle, since the actuator lies in the middle.
 """
 
 from dataclasses import dataclass
@@ -30,15 +31,21 @@ class Bending:
         own: (R,) ratios, rising.
         turns: (R,) rad per mm, rising.
         lengths: (R,) length over flat length.
+        rises: (R,) of the middle above the chord, over the length.
     """
 
     own: Array
     turns: Array
     lengths: Array
+    rises: Array
 
     def ratios(self, turn: Array, length: Array) -> Array:
         """Return the ratios (B,) of beams of some length (mm) that turn by so much (rad)."""
         return np.interp(turn / length, self.turns, self.own)
+
+    def rise(self, turn: Array, length: Array) -> Array:
+        """Return how far (B,) mm the middles of such beams are above their chords."""
+        return length * np.interp(turn / length, self.turns, self.rises)
 
     def flat(self, ratios: Array, length: Array) -> Array:
         """Return how long (B,) mm beams are flat that shall be so long (mm)."""
@@ -79,15 +86,33 @@ def measured(engine: str, model: str | None, length: float, material: Material) 
     beams = plain.beams[along]
     turn = turns(centres, up, beams).mean(axis=1) / length
     longer = arcs(centres, up, beams).mean(axis=1) / length
+    middles = np.array([result.beams[-1][along, 1].mean(axis=1) for result in results])
+    above = middles - centres[:, beams].mean(axis=2)
+    rise = (above * up[:, beams].mean(axis=2)).sum(axis=-1).mean(axis=1) / length
     if not (np.diff(turn) > 0).all():
         raise ComputationError("longer actuators do not bend beams further", "start", "material")
-    return Bending(RATIOS[known], turn, longer)
+    return Bending(RATIOS[known], turn, longer, rise)
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """What a patch's curvature asks for.
+
+    Attributes:
+        joints: (K, 2) mm, of the flat grid.
+        ratios: (B,) of its actuators.
+        middles: (B, 3) mm, where the middles of the beams are then.
+    """
+
+    joints: Array
+    ratios: Array
+    middles: Array
 
 
 def start(
     targets: Array, normals: Array, grid: Grid, material: Material, engine: str, model: str | None
-) -> tuple[Array, Array]:
-    """Return the flat joints (K, 2) mm and the ratios (B,) from which a patch's search begins.
+) -> Start:
+    """Return what a patch's search begins with.
 
     Args:
         targets: (K, 3) mm, of the patch's joints.
@@ -97,9 +122,12 @@ def start(
         engine: its name.
         model: of it; None: its default.
     """
-    length = arcs(targets, normals, grid.beams)
+    length, turn = arcs(targets, normals, grid.beams), turns(targets, normals, grid.beams)
     bending = measured(engine, model, round(float(length.mean())), material)
-    ratios = bending.ratios(turns(targets, normals, grid.beams), length)
-    joints = flattened(targets, normals, grid)
+    ratios = bending.ratios(turn, length)
     longer = float((bending.flat(ratios, length) / length).mean())
-    return joints * longer, ratios
+    up = normals[grid.beams].mean(axis=1)
+    up /= np.linalg.norm(up, axis=1, keepdims=True)
+    rise = bending.rise(turn, length)[:, None] * up
+    middles = targets[grid.beams].mean(axis=1) + rise
+    return Start(longer * flattened(targets, normals, grid), ratios, middles)
