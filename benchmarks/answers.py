@@ -142,7 +142,8 @@ def main() -> None:
         f"(seed {SEED}) by finite elements, the start is a flat grid of {LENGTH:g} mm beams, the "
         f"engine is the default model. Each is searched once for one answer and once for "
         f"{given.answers}, with the limit of {given.seconds:g} s, after which other answers may "
-        "take twice as long again; times are of one core of the processor. Errors are means over the nine goals, by finite elements."
+        "take twice as long again; times are of one core of the processor. Errors are means over "
+        "the nine goals, by finite elements."
     )
     head = ["task", "one answer, mm", "best of several, mm", f"within {ASKED:g} mm", "worst, mm"]
     head += ["distance, least / mean", "actuators of the best / least, mm"]

@@ -233,9 +233,9 @@ def test_the_command_writes_answers_and_their_picture(run, small, tmp_path, monk
     code, out, _ = run(*words, "--printer", "voron")
     assert code == 0
     assert "print by" in out
-    told = json.loads((folder / "answers.json").read_text())
-    assert told["schema"] == "simulearn.answers/1"
-    rows = told["answers"]
+    written = json.loads((folder / "answers.json").read_text())
+    assert written["schema"] == "simulearn.answers/1"
+    rows = written["answers"]
     grids = [read_grid(folder / f"answer-{k}.json") for k in range(1, len(rows) + 1)]
     assert grids[0].digest == read_grid(folder / "best.json").digest
     assert json.loads((folder / "summary.json").read_text())["answers"] == rows

@@ -93,9 +93,7 @@ class _Several:
     ) -> None:
         self.search, self.space, self.goals, self.best = search, space, goals, best
         self.archive, self.limits = archive, search.task.limits
-        # Up to this error by the engine, a design may be an answer.
         self.slack = SLACK * space.grid.dimension
-        self.good = best.error_mm + self.slack
         self.first = search.seconds
         self.deadline = monotonic() + self.limits.seconds_in_all - self.first
         # What an earlier run came to; and the best, which nothing of its kind may replace.
@@ -105,6 +103,13 @@ class _Several:
         for grid, error in [*known, (best.grid, 0.0)]:
             one = grid.centred
             archive.add(one.joints[None], one.actuators[None], np.array([error]))
+
+    @property
+    def good(self) -> float:
+        """Up to this error by the engine (mm) a design is a good answer."""
+        errors = self.archive.errors
+        others = errors[errors > 0]  # the best is there without its own
+        return float(min([self.best.error_mm, *others])) + self.slack
 
     def begin_again(self) -> None:
         """Search from other beginnings; the archive keeps what is found."""
@@ -268,7 +273,11 @@ class _Several:
         best = answers[0]
         if not search.task.robust:
             best = min(answers, key=attrgetter("error"))
-        search.answers = (best, *(one for one in answers if one is not best))
+        others = [one for one in answers if one is not best]
+        if best is not answers[0]:  # beside which the first may be none any more
+            most = self.good + FAR * self.slack
+            others = [one for one in others if one.check.error_mm <= most]
+        search.answers = on_front((best, *others))
         return best.check, best.probability, [*warnings, *self._wanting()]
 
     def _wanting(self) -> list[Message]:

@@ -6,6 +6,7 @@ import { hideStage, showStage } from "../service/search.js";
 import { state } from "../store.js";
 import { t } from "../text/text.js";
 import { rove } from "./controls.js";
+import { takeStage } from "./found.js";
 
 /** Return what an answer takes, in words. */
 function takes({ actuators, length, seconds, within }) {
@@ -16,14 +17,14 @@ function takes({ actuators, length, seconds, within }) {
   ].filter(Boolean).join(", ");
 }
 
-function row(one, k, take) {
+function row(one, k) {
   const name = t("panels.answerName", { n: k + 1, mm: mm(one.error), takes: takes(one) });
   const show = () => showStage(one, t("panels.answerLabel", { n: k + 1 }));
   return h("li", { key: k }, [
     h("button", {
       type: "button", class: ["suggestion", "answer"], "aria-label": name,
       onPointermove: show, onPointerleave: hideStage, onFocus: show, onBlur: hideStage,
-      onClick: () => take(one),
+      onClick: () => takeStage(one),
     }, [
       h("span", { class: "suggestion-text" }, [
         h("span", { class: "suggestion-words numbers" }, [
@@ -37,17 +38,16 @@ function row(one, k, take) {
   ]);
 }
 
-/** The answers as a list of buttons. take: called with the answer that is taken. */
+/** The answers as a list of buttons. */
 export const Answers = {
-  props: { take: Function },
-  setup(props) {
+  setup() {
     onBeforeUnmount(hideStage);
     const onKeydown = (event) => rove(event, [...event.currentTarget.querySelectorAll("button")]);
     return () => h("div", { class: "answers" }, [
       h("h3", t("panels.answers")),
       h("p", { class: "note" }, t("panels.answersChoose")),
       h("ol", { class: "suggestions", "aria-label": t("panels.answers"), onKeydown },
-        state.search.answers.map((one, k) => row(one, k, props.take))),
+        state.search.answers.map((one, k) => row(one, k))),
     ]);
   },
 };

@@ -6,13 +6,13 @@ import { discardSearch, hideStage, showStage } from "../service/search.js";
 import { takeDesign } from "../service/taking.js";
 import { notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
-import { Answers } from "./answers.js";
 import { button, iconButton } from "./controls.js";
 import { curve } from "./curve.js";
 import { facts } from "./fields.js";
 import { note, sentence, warnings } from "./notes.js";
 
-function takeStage(stage) {
+/** Take a design of the search, which is forgotten then: a stage, or one of several answers. */
+export function takeStage(stage) {
   takeDesign(state.search.document, stage, t("panels.didSearch", { mm: mm(stage.error) }));
   select({});
   discardSearch();
@@ -95,7 +95,6 @@ export const Found = {
         best.agrees === false && note("warning", t("panels.beyondBound", { mm: mm(best.bound_mm) })),
         best.why_no_fea && note("warning", t("panels.whyNoFea", { why: sentence(best.why_no_fea) })),
         ...warnings(best.warnings),
-        state.search.answers.length > 1 && h(Answers, { take: takeStage }),
         h("div", { class: "row", onClickCapture: refocus }, [
           button(t(last ? "panels.take" : "panels.takeStep"), () => takeStage(stageOf(at.value)), {
             kind: "primary",

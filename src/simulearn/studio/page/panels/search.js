@@ -6,6 +6,7 @@ import { searching, startSearch, stopSearch, timesAsLong } from "../service/sear
 import { ANSWERS as OTHERS, ofBest } from "../service/steps.js";
 import { stale, state } from "../store.js";
 import { t } from "../text/text.js";
+import { Answers } from "./answers.js";
 import { button } from "./controls.js";
 import { curve } from "./curve.js";
 import { NumberField } from "./fields.js";
@@ -40,6 +41,7 @@ function form(again) {
       label: t("panels.timeLimit"), name: t("panels.timeLimit"), unit: "s", value: wishes.seconds,
       least: LEAST, most: MOST / timesAsLong(wishes.answers), step: 10, digits: 0, commit: (value) => { wishes.seconds = value; },
     }),
+    h("p", { class: "note answers-note" }, wishes.answers > 1 ? t("panels.answersNote") : ""),
     h(NumberField, {
       label: t("panels.answersWanted"), name: t("panels.answersWanted"), value: wishes.answers,
       least: 1, most: ANSWERS, step: 1, digits: 0,
@@ -48,7 +50,6 @@ function form(again) {
         wishes.seconds = Math.min(wishes.seconds, MOST / timesAsLong(wishes.answers));
       },
     }),
-    wishes.answers > 1 && h("p", { class: "note" }, t("panels.answersNote")),
     button(t(again ? "panels.searchAgain" : "panels.searchStart"), () => startSearch(wishes), {
       kind: again ? "" : "primary",
       disabled: nothing || !state.answer || stale.value || state.document.goals.length === 0,
@@ -101,6 +102,7 @@ export const SearchPanel = {
         searching() && running(search),
         search?.state === "done" && search.problem && note("warning", reasonOf(search.problem)),
         search?.state === "done" && h(Found, { key: search.key }),
+        search?.answers?.length > 1 && h(Answers),
         search?.state === "failed" && problemNote(t("panels.searchFailed"), search.problem),
         search?.state === "cancelled" && note("info", t("panels.searchEnded")),
         !searching() && form(search !== null),
