@@ -251,7 +251,6 @@ class Search:
             source=drawing(len(self.steps)),  # other numbers in each phase and after each stop
             until=until,
             cancel=self.cancel,
-            collides=colliding(self.engine, Until(self.cancel, until)),
             archive=self.archive,
             collides=collides,
         )
