@@ -22,6 +22,7 @@ PAGES: dict[str, str | list[str]] = {
     "material": "simulearn.material",
     "simulate": "simulearn.simulate",
     "inverse": "simulearn.inverse",
+    "surfaces": "simulearn.surfaces",
     "fabricate": "simulearn.fabricate",
     "drawings": [
         "simulearn.drawings.importing.imported",

@@ -20,11 +20,14 @@ from simulearn.fabricate import Job
 from simulearn.files import replacing
 from simulearn.grid import Grid, outline
 from simulearn.interop.body import body
+from simulearn.inverse.clear import ClearOf
 from simulearn.inverse.goals import Goals
+from simulearn.inverse.kinds import AtPoints, OnSet
 from simulearn.palette import BEADS
 from simulearn.schedule import SCHEDULE
 from simulearn.show import style
 from simulearn.simulate import Result, collision_text
+from simulearn.surfaces import Curve, Surface
 
 Array = NDArray[np.float64]
 Colour = str | tuple[float, float, float]
@@ -57,7 +60,7 @@ def write_3dm(
     _design(file, result.grid.centred, flat, sections)
     _frames(file, result)
     if goals is not None:
-        _targets(file, goals)
+        _targets(file, goals, result)
     if moved is not None:
         _toolpath(file, *moved)
     file.strings(_facts(result))
@@ -150,9 +153,26 @@ def _frames(file: "_File", result: Result) -> None:
         file.mesh(f"frames::{title}", vertices, shape.quads, title, colour, more, k == last)
 
 
-def _targets(file: "_File", goals: Goals) -> None:
-    for vertex, target, weight in zip(goals.vertices, goals.targets, goals.weights, strict=True):
-        file.point("targets", target, str(vertex), TARGET, {"weight": f"{weight:g}"})
+def _targets(file: "_File", goals: Goals, result: Result) -> None:
+    """Add what is wanted, where the result has it that stays with its fixed joint."""
+    back = goals.place(goals.points(result.joints[-1], result.beams[-1])).back
+    for part in goals.parts:
+        wanted = part.wanted
+        if isinstance(wanted, AtPoints):
+            rows = zip(part.names, back(wanted.targets), part.weights, strict=True)
+            for name, target, weight in rows:
+                file.point("targets", target, name, TARGET, {"weight": f"{weight:g}"})
+        elif isinstance(wanted, OnSet) and isinstance(wanted.set, Surface):
+            _surface(file, "targets", wanted.set.placed(back), wanted.kind)
+        elif isinstance(wanted, OnSet) and isinstance(wanted.set, Curve):
+            file.line("targets", back(wanted.set.points), wanted.kind, TARGET)
+        elif isinstance(wanted, ClearOf):
+            _surface(file, "bodies", wanted.surface.placed(back), wanted.kind)
+
+
+def _surface(file: "_File", layer: str, surface: Surface, name: str) -> None:
+    quads = surface.faces[:, [0, 1, 2, 2]]
+    file.mesh(layer, surface.vertices, quads, name, TARGET, {}, True)
 
 
 def _on_grid(job: Job, result: Result) -> tuple[Job, list[int], Array, Array]:

@@ -55,11 +55,13 @@ class Goals:
         offset: (V, 3) mm, from where vertices will be to where an engine has them.
         pose: the rigid motion at which the best one is looked for, where the shape may be placed
             anywhere; None where it is seen from the fixed joint.
+        shapes: how many shapes the goals are of, each with the same ones and a motion of its own.
     """
 
     parts: tuple[Part, ...]
     offset: Array
     pose: Place | None = None
+    shapes: int = 1
 
     @classmethod
     def of(
@@ -111,10 +113,17 @@ class Goals:
         """(K, 3) mm, the targets of those goals that are points."""
         found = [
             part.wanted.targets + self.offset[at]
-            for part, at in self._slices()
+            for part, at in self.slices()
             if isinstance(part.wanted, AtPoints)
         ]
         return np.concatenate([np.zeros((0, 3)), *found])
+
+    def slices(self) -> Iterator[tuple[Part, slice]]:
+        """Yield the parts, and where their vertices are among all."""
+        begin = 0
+        for part in self.parts:
+            yield part, slice(begin, begin + len(part.vertices))
+            begin += len(part.vertices)
 
     def points(self, joints: Array, sections: Array) -> Array:
         """Return where the vertices are: (..., V, 3), given corners as `Vertex.of` takes them."""
@@ -167,7 +176,8 @@ class Goals:
     def repeated(self, count: int) -> "Goals":
         """Return the goals of so many shapes together, those of one after those of another."""
         parts = tuple(replace(part, weights=part.weights / count) for part in self.parts)
-        return replace(self, parts=parts * count, offset=np.tile(self.offset, (count, 1)))
+        offset = np.tile(self.offset, (count, 1))
+        return replace(self, parts=parts * count, offset=offset, shapes=count)
 
     def begun(self, points: Array) -> "Goals":
         """Return the goals of a search whose first design has points (V, 3) mm.
@@ -177,9 +187,7 @@ class Goals:
         here = points - self.offset
         goals = self if self.pose is None else replace(self, pose=self._first_pose(here))
         placed = goals._placed(points[None])[0]
-        parts = [
-            replace(part, wanted=part.wanted.begun(placed[at])) for part, at in goals._slices()
-        ]
+        parts = [replace(part, wanted=part.wanted.begun(placed[at])) for part, at in goals.slices()]
         return replace(goals, parts=tuple(parts))
 
     def place(self, points: Array) -> Place:
@@ -189,17 +197,21 @@ class Goals:
         turn, shift = self._poses((points - self.offset)[None])
         return Place(turn[0], shift[0])
 
+    def placed(self, points: Array) -> Array:
+        """Return points (V, 3) mm of a shape where they are compared."""
+        return self._placed(points[None])[0]
+
     def lines(self, points: Array) -> Array:
         """Return lines (K, 2, 3) mm from where points (V, 3) are placed to where they should be."""
-        placed = self._placed(points[None])[0]
-        found = [part.wanted.lines(placed[at]) for part, at in self._slices()]
+        placed = self.placed(points)
+        found = [part.wanted.lines(placed[at]) for part, at in self.slices()]
         return np.concatenate([np.zeros((0, 2, 3)), *found])
 
     def degrees(self, points: Array) -> list[float | None]:
         """Return by how many degrees goals are off that are directions, at points (V, 3) mm."""
-        placed = self._placed(points[None])[0]
+        placed = self.placed(points)
         found: list[float | None] = []
-        for part, at in self._slices():
+        for part, at in self.slices():
             off = part.wanted.degrees(placed[at])
             found += [None] * len(part.weights) if off is None else off.tolist()
         return found
@@ -222,18 +234,12 @@ class Goals:
 
     def _slope(self, placed: Array, soft: float) -> tuple[float, Array]:
         value, slope = 0.0, np.zeros_like(placed)
-        for part, at in self._slices():
+        for part, at in self.slices():
             away = part.wanted.away(placed[None, at])[0]
             length = np.sqrt((away**2).sum(axis=-1) + soft**2)
             value += float(part.weights @ (length - soft))
             slope[at] += part.wanted.pulled(placed[at], (part.weights / length)[:, None] * away)
         return value, slope
-
-    def _slices(self) -> Iterator[tuple[Part, slice]]:
-        begin = 0
-        for part in self.parts:
-            yield part, slice(begin, begin + len(part.vertices))
-            begin += len(part.vertices)
 
     def _over(
         self, measure: Callable[[Array], Array], place: Callable[[Array], Array], points: Array
@@ -247,18 +253,22 @@ class Goals:
     def _residual(self, placed: Array) -> Array:
         found = [
             part.wanted.away(placed[:, at]) * np.sqrt(part.weights)[:, None]
-            for part, at in self._slices()
+            for part, at in self.slices()
         ]
         return np.concatenate([part.reshape(len(placed), -1) for part in found], axis=1)
 
     def _distances(self, placed: Array) -> Array:
-        found = [sized(part.wanted.away(placed[:, at])) for part, at in self._slices()]
+        found = [sized(part.wanted.away(placed[:, at])) for part, at in self.slices()]
         return np.concatenate(found, axis=1)
 
     def _placed(self, points: Array) -> Array:
         """Return points (T, V, 3) less the offset, after the best motion where there is one."""
         here = points - self.offset
-        return here if self.pose is None else moved(here, *self._poses(here))
+        if self.pose is None:
+            return here
+        one = replace(self, parts=self.parts[: len(self.parts) // self.shapes], shapes=1)
+        each = here.reshape(-1, here.shape[1] // self.shapes, 3)
+        return moved(each, *one._poses(each)).reshape(here.shape)
 
     def _poses(self, here: Array, starts: Sequence[Place] = ()) -> tuple[Array, Array]:
         assert self.pose is not None
@@ -269,7 +279,7 @@ class Goals:
     def _first_pose(self, here: Array) -> Place:
         """Return the best motion of the first design, found from many beginnings."""
         places = [Place()]
-        for part, at in self._slices():
+        for part, at in self.slices():
             if isinstance(part.wanted, AtPoints) and len(part.vertices) > 2:
                 places.append(Place.fitting(here[at], part.wanted.targets))
             elif isinstance(part.wanted, OnSet) and isinstance(part.wanted.set, Surface):

@@ -28,12 +28,13 @@ class Set(Protocol):
 
 
 class Wanted(ABC):
-    """Goals of one kind: g of them, about n vertices."""
+    """Goals of one kind: g of them, about n vertices.
 
-    @property
-    @abstractmethod
-    def kind(self) -> str:
-        """Its name."""
+    Attributes:
+        kind: its name.
+    """
+
+    kind: str
 
     @abstractmethod
     def names(self, vertices: Sequence[Vertex]) -> tuple[str, ...]:

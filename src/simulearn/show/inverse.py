@@ -1,12 +1,8 @@
-"""Pictures of inverse and hybrid design: errors, targets beside shapes, changes, suggestions.
-
-A target is a green ring with a dot; a line leads from it to the vertex that is wanted there.
-"""
+"""Pictures of inverse and hybrid design: errors, targets beside shapes, changes, suggestions."""
 
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,11 +21,11 @@ from simulearn.show.deformed import draw_deformed, draw_skin, draw_triad, qualif
 from simulearn.show.deformed import extent as extent_deformed
 from simulearn.show.flat import draw_flat
 from simulearn.show.flat import extent as extent_flat
+from simulearn.show.targets import TARGET, draw_goals, draw_sets, extents, placed, region
 from simulearn.simulate import Result, skin
 
 Array = NDArray[np.float64]
 
-TARGET = "#009e73"  # of Okabe and Ito's palette, as the actuators' colours are
 SPACING = 3.0  # mm, length of the quadrilaterals along a beam
 EACH = 220  # ms that a design is shown
 
@@ -83,31 +79,21 @@ def wanted(
         camera: where the viewer is.
         width: of the figure, inches.
     """
-    surface = skin(result, SPACING)
-    low, high = _around([extent_deformed(surface, camera, [0, -1])], goals, camera)
+    points = _points(result, goals)
+    surface = placed(skin(result, SPACING), goals, points)
+    box = region([surface])
+    low, high = _around([extent_deformed(surface, camera, [0, -1])], goals, box, camera)
     fig = Figure(figsize=(width, width), dpi=style.DPI)
     ax, inch = style.footed(fig, low, high)
+    draw_sets(ax, goals, box, camera)
     draw_deformed(ax, result, surface, -1, camera)
-    draw_goals(ax, goals, _points(result, goals), camera)
+    draw_goals(ax, goals, points, camera)
     draw_triad(ax, high[0] - 0.2 * inch, low[1] - 0.15 * inch, 0.22 * inch, camera)
-    style.words(fig, f"{len(goals)} targets, mean distance {error_mm:.2f} mm ({result.engine})")
+    what = "targets" if {*goals.kinds} == {"point"} else "goals"
+    style.words(fig, f"{len(goals)} {what}, mean distance {error_mm:.2f} mm ({result.engine})")
     style.remark(fig, qualified(result))
     style.legend(fig)
     return style.ink(fig)
-
-
-def draw_goals(
-    ax: Axes, goals: Goals, points: Array, camera: Camera, size: float = 5.0
-) -> list[Any]:
-    """Draw targets, and lines to where their vertices are (G, 3); return what was drawn."""
-    here, there = camera.see(points)[:, :2], camera.see(goals.targets)[:, :2]
-    drawn: list[Any] = []
-    for a, b in zip(here, there, strict=True):
-        drawn += ax.plot([a[0], b[0]], [a[1], b[1]], color=TARGET, lw=1.1, zorder=5)
-    ring: dict[str, Any] = {"ls": "none", "marker": "o", "color": TARGET, "clip_on": False}
-    drawn += ax.plot(*there.T, ms=size, mfc="none", mew=1.0, zorder=6, **ring)
-    drawn += ax.plot(*there.T, ms=0.28 * size, mew=0, zorder=6, **ring)
-    return drawn
 
 
 def changing(
@@ -130,19 +116,22 @@ def changing(
         width: of the pictures, inches.
         dpi: their pixels per inch.
     """
-    surfaces = [skin(result, SPACING) for result in results]
+    points = [_points(result, goals) for result in results]
+    surfaces = [placed(skin(r, SPACING), goals, p) for r, p in zip(results, points, strict=True)]
+    box = region(surfaces)
     flats = [extent_flat(result.grid) for result in results]
     left = _union(flats)
-    right = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
+    right = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, box, camera)
     at, low, high = _beside(left, right)
     pictures = []
-    for result, step, surface in zip(results, steps, surfaces, strict=True):
+    for result, step, surface, here in zip(results, steps, surfaces, points, strict=True):
         fig = Figure(figsize=(width, width), dpi=dpi)
         canvas = FigureCanvasAgg(fig)
         ax, _ = style.footed(fig, low, high)
         draw_flat(ax, result.grid, False, at)
+        draw_sets(ax, goals, box, camera)
         draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
-        draw_goals(ax, goals, _points(result, goals), camera)
+        draw_goals(ax, goals, here, camera)
         style.words(fig, f"iteration {step.iteration}: {step.error_mm:.2f} mm")
         style.legend(fig)
         style.ink(fig)
@@ -162,9 +151,11 @@ def cards(
         goals: what is wanted, if anything.
         camera: where the viewer of the shapes is.
     """
-    surfaces = [skin(result, SPACING) for result in results]
+    pairs = zip(results, ranking.best, strict=True)
+    surfaces = [placed(skin(result, SPACING), goals, one.points) for result, one in pairs]
+    box = region(surfaces)
     plans = _union([extent_flat(result.grid) for result in results])
-    shapes = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, camera)
+    shapes = _around([extent_deformed(s, camera, [-1]) for s in surfaces], goals, box, camera)
     across = max(float(b[0] - a[0]) for a, b in (plans, shapes))
     tall = [float(b[1] - a[1]) / across for a, b in (plans, shapes)]
     count, width = len(results), 1.75
@@ -185,6 +176,8 @@ def cards(
                 draw_flat(ax, result.grid, False)
                 _mark(ax, one, ranking.grid)
             else:
+                if goals is not None:
+                    draw_sets(ax, goals, box, camera)
                 draw_skin(ax, surface.vertices[-1], surface, result.grid.fixed, camera)
                 if goals is not None:
                     draw_goals(ax, goals, one.points, camera, 3.5)
@@ -220,13 +213,10 @@ def _points(result: Result, goals: Goals) -> Array:
 
 
 def _around(
-    extents: Sequence[tuple[Array, Array]], goals: Goals | None, camera: Camera
+    shapes: Sequence[tuple[Array, Array]], goals: Goals | None, box: Array, camera: Camera
 ) -> tuple[Array, Array]:
-    """Return the lower left and upper right corner (2,) of extents and targets together."""
-    if goals is None:
-        return _union(extents)
-    placed = camera.see(goals.targets)[:, :2]
-    return _union([*extents, (placed.min(axis=0), placed.max(axis=0))])
+    """Return the lower left and upper right corner (2,) of shapes and targets together."""
+    return _union(shapes if goals is None else [*shapes, extents(goals, box, camera)])
 
 
 def _union(extents: Sequence[tuple[Array, Array]]) -> tuple[Array, Array]:

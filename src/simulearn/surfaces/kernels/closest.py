@@ -8,6 +8,7 @@ from simulearn.native import native
 
 Array = Any
 FUSED = {"contract"}  # products and sums may be rounded once
+NARROW = 1e-12  # of the squared area; a triangle has no inside that can be computed
 STACK = 128  # nodes that wait; a tree of 2^60 triangles needs fewer
 
 
@@ -77,39 +78,42 @@ def _to_box(boxes: Array, node: int, x: float, y: float, z: float) -> float:
 def _to_triangle(corners: Array, i: int, x: float, y: float, z: float) -> Any:
     """Return the squared distance of a point from a triangle, and the closest point.
 
-    Source: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
+    That is the foot of the point if it lies within, else the closest one of three edges: so it is
+    right for triangles without width, too.
     """
     ax, ay, az = corners[i, 0, 0], corners[i, 0, 1], corners[i, 0, 2]
     ux, uy, uz = corners[i, 1, 0] - ax, corners[i, 1, 1] - ay, corners[i, 1, 2] - az
     vx, vy, vz = corners[i, 2, 0] - ax, corners[i, 2, 1] - ay, corners[i, 2, 2] - az
     px, py, pz = x - ax, y - ay, z - az
-    d1, d2 = ux * px + uy * py + uz * pz, vx * px + vy * py + vz * pz
-    uu, uv, vv = (
-        ux * ux + uy * uy + uz * uz,
-        ux * vx + uy * vy + uz * vz,
-        vx * vx + vy * vy + vz * vz,
-    )
-    d3, d4, d5, d6 = d1 - uu, d2 - uv, d1 - uv, d2 - vv
-    va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
-    if d1 <= 0 and d2 <= 0:
-        s, t = 0.0, 0.0
-    elif d3 >= 0 and d4 <= d3:
-        s, t = 1.0, 0.0
-    elif d6 >= 0 and d5 <= d6:
-        s, t = 0.0, 1.0
-    elif vc <= 0 and d1 >= 0 and d3 <= 0:
-        s, t = d1 / uu, 0.0
-    elif vb <= 0 and d2 >= 0 and d6 <= 0:
-        s, t = 0.0, d2 / vv
-    elif va <= 0 and d4 >= d3 and d5 >= d6:
-        t = (d4 - d3) / ((d4 - d3) + (d5 - d6))
-        s = 1.0 - t
-    else:
-        whole = va + vb + vc
-        s, t = vb / whole, vc / whole
-    qx, qy, qz = s * ux + t * vx, s * uy + t * vy, s * uz + t * vz
-    ex, ey, ez = px - qx, py - qy, pz - qz
-    return ex * ex + ey * ey + ez * ez, ax + qx, ay + qy, az + qz
+    uu, vv = ux * ux + uy * uy + uz * uz, vx * vx + vy * vy + vz * vz
+    uv = ux * vx + uy * vy + uz * vz
+    pu, pv = px * ux + py * uy + pz * uz, px * vx + py * vy + pz * vz
+    area = uu * vv - uv * uv
+    s, t, within = 0.0, 0.0, False
+    if area > NARROW * uu * vv:
+        s, t = (vv * pu - uv * pv) / area, (uu * pv - uv * pu) / area
+        within = s >= 0 and t >= 0 and s + t <= 1
+    if within:
+        qx, qy, qz = s * ux + t * vx, s * uy + t * vy, s * uz + t * vz
+        square = (px - qx) ** 2 + (py - qy) ** 2 + (pz - qz) ** 2
+        return square, ax + qx, ay + qy, az + qz
+    share = min(max(pu / uu, 0.0), 1.0) if uu > 0 else 0.0
+    qx, qy, qz = share * ux, share * uy, share * uz
+    square = (px - qx) ** 2 + (py - qy) ** 2 + (pz - qz) ** 2
+    share = min(max(pv / vv, 0.0), 1.0) if vv > 0 else 0.0
+    ex, ey, ez = share * vx, share * vy, share * vz
+    other = (px - ex) ** 2 + (py - ey) ** 2 + (pz - ez) ** 2
+    if other < square:
+        square, qx, qy, qz = other, ex, ey, ez
+    wx, wy, wz = vx - ux, vy - uy, vz - uz
+    ww = wx * wx + wy * wy + wz * wz
+    along = (px - ux) * wx + (py - uy) * wy + (pz - uz) * wz
+    share = min(max(along / ww, 0.0), 1.0) if ww > 0 else 0.0
+    ex, ey, ez = ux + share * wx, uy + share * wy, uz + share * wz
+    other = (px - ex) ** 2 + (py - ey) ** 2 + (pz - ez) ** 2
+    if other < square:
+        square, qx, qy, qz = other, ex, ey, ez
+    return square, ax + qx, ay + qy, az + qz
 
 
 @native()
