@@ -35,8 +35,8 @@ def collision_warnings(collisions: Sequence[Collision]) -> tuple[Message, ...]:
     """Return a warning that names the deepest collisions, or none where there are none."""
     if not collisions:
         return ()
-    named = ", ".join(collision_text(one) for one in collisions[:NAMED])
-    more = f", and {len(collisions) - NAMED} more pairs" if len(collisions) > NAMED else ""
+    named = "; ".join(collision_text(one) for one in collisions[:NAMED])
+    more = f"; and {len(collisions) - NAMED} more pairs" if len(collisions) > NAMED else ""
     first = min(one.first for one in collisions)
     text = (
         f"parts run through each other ({named}{more}): contact is not simulated, so from frame "

@@ -42,7 +42,8 @@ export function summaryOf(result) {
   for (const { parts, frame, share, depth_mm: mm } of (result.collisions ?? []).slice(0, NAMED)) {
     const [a, b] = parts.map((part) => partName(result, part));
     const when = moment(share < 0.5 ? frame : frame + 1);
-    notes.push({ kind: "warning", text: t("shape.collide", { a, b, when, mm: number(mm) }) });
+    const text = t("shape.collide", { a, b, when, mm: number(mm) });
+    notes.push({ kind: "warning", text: text[0].toUpperCase() + text.slice(1) });
   }
   const more = (result.collisions?.length ?? 0) - NAMED;
   if (more > 0) notes.push({ kind: "warning", text: t("shape.moreCollide", { count: more }) });
