@@ -4,6 +4,7 @@ All are written for the person who asked: what is wrong, where, and what would b
 by `code` and `where`; no message speaks of one program's switches.
 """
 
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -68,6 +69,25 @@ class Cancel(Protocol):
     def is_set(self) -> bool:
         """Return whether the computation shall stop."""
         ...
+
+
+class Either:
+    """A token that is set here, or by whoever can cancel all of it.
+
+    Args:
+        other: the token of all of it.
+    """
+
+    def __init__(self, other: Cancel | None) -> None:
+        self._own, self._other = threading.Event(), other
+
+    def set(self) -> None:
+        """Let what goes by it stop."""
+        self._own.set()
+
+    def is_set(self) -> bool:
+        """Return whether the computation shall stop."""
+        return self._own.is_set() or (self._other is not None and self._other.is_set())
 
 
 def stop_if(cancel: Cancel | None) -> None:

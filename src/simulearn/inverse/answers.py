@@ -12,8 +12,7 @@ half of the time that the first answer took, unless there are too few good desig
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import replace
 from operator import attrgetter
@@ -21,21 +20,20 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, Message, stop_if
+from simulearn.errors import CancelledError, ComputationError, Either, InputError, Message, stop_if
 from simulearn.files import cores
 from simulearn.grid import Grid, check_designs
 from simulearn.inverse.archive import Archive
+from simulearn.inverse.beginnings import drawn_anew, elsewhere, narrowed, with_less
 from simulearn.inverse.checking import Check, check
 from simulearn.inverse.front import Answer, actuators_of, choice, on_front
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import ANSWERS
 from simulearn.inverse.prints import probability_of
 from simulearn.inverse.probability import Probability
-from simulearn.inverse.problem import OutOfTime, Problem, Scored, Until
+from simulearn.inverse.problem import OutOfTime, Scored, Until
 from simulearn.inverse.space import Space
-from simulearn.learn.common.model import Designs
 from simulearn.material import load_material
 
 if TYPE_CHECKING:
@@ -49,7 +47,6 @@ SLACK = 0.015  # of the dimension, by which another answer may be worse than the
 FAR = 3.0  # times that, where there are not enough; it is said of them
 OFF = 2.0  # least distances, by which ratios drawn anew stay away from what is there
 BEGINNINGS = 4
-DRAWS = 5  # of ratios, until a design has an answer
 LATE = "the time was over before it was checked"
 SHARE = 0.5  # of the time that the first answer took, for all new beginnings together
 
@@ -129,15 +126,22 @@ class _Several:
 
     def _from_another(self, until: float) -> None:
         """Search from another beginning, and note what it came to."""
-        search = self.search
-        space, words, far = self.space, "ratios drawn anew", OFF
-        if self.begun_again % 2:
-            space, words, far = *self._with_less(), 1.0
+        search, space, words = self.search, self.space, "ratios drawn anew"
+        less = self.begun_again % 2 == 1
+        if less:
+            problem = search.problem(space, self.goals, np.inf)
+            good = self.archive.errors <= self.good
+            start = with_less(problem, self.archive, good, self.begun_again // 2)
+            space = narrowed(space, start, search.task.free)
+            words = f"with {np.count_nonzero(start.actuators)} actuators"
         problem = search.problem(space, self.goals, until)
+        steps = [step.grid(self.space.grid) for step in search.steps if step.phase == ANSWERS]
+        away = 1.0 if less else OFF
         try:
-            start = self._start(problem)
-            problem.allowed, problem.best = self._elsewhere(far), None
-            for _ in search.method(problem, start):
+            begin = problem.scored(*space.start) if less else drawn_anew(problem)
+            problem.best = None  # what the beginning is near to may be better
+            problem.allowed = elsewhere(self.archive, [self.best.grid.centred, *steps], away)
+            for _ in search.method(problem, begin):
                 problem.going()
         except OutOfTime:
             pass
@@ -146,83 +150,34 @@ class _Several:
         if problem.best is not None:
             self._note(space, problem.best, problem.designs, words)
 
-    def _start(self, problem: Problem) -> Scored:
-        """Return a design to begin with: that of a space with less, or one with other ratios."""
-        x, a = problem.space.start
-        if problem.space is self.space:
-            for _ in range(DRAWS):
-                drawn = problem.space.nearest(x, 2 * problem.source.random(len(a)) - 1)
-                start = problem.scored(x, drawn)
-                if np.isfinite(start.error):
-                    return start
-        return problem.scored(x, a)
-
-    def _elsewhere(self, far: float) -> Callable[[Designs], NDArray[np.bool_]]:
-        """Return which designs are far from the best one and from what new beginnings came to.
-
-        Args:
-            far: how many times the least distance.
-        """
-        steps = [step for step in self.search.steps if step.phase == ANSWERS]
-        there = [self.best.grid.centred, *(step.grid(self.space.grid) for step in steps)]
-        joints = np.array([grid.joints for grid in there])
-        ratios = np.array([grid.actuators for grid in there])
-        least, distance = far * self.archive.least, self.archive.distance
-
-        def elsewhere(designs: Designs) -> NDArray[np.bool_]:
-            away = distance(designs.flat, designs.actuators, joints, ratios)
-            return np.asarray(away.min(axis=1) >= least)
-
-        return elsewhere
-
-    def _with_less(self) -> tuple[Space, str]:
-        """Return the space in which the good design with the least actuators has one less.
-
-        Its beginning lacks the one without which the design is closest to the goals, the next time
-        the one without which it is second closest.
-        """
-        archive, space = self.archive, self.space
-        good = np.flatnonzero(archive.errors <= self.good)
-        k = good[np.abs(archive.ratios[good]).sum(axis=1).argmin()]
-        whole = space.grid
-        grid = Grid(archive.joints[k], whole.beams, archive.ratios[k], whole.fixed, whole.material)
-        x, a = space.point(grid)
-        active = np.flatnonzero(a)
-        if len(active) < 2:
-            return space, "as it is"
-        less = np.repeat(a[None], len(active), axis=0)
-        less[np.arange(len(active)), active] = 0.0
-        problem = self.search.problem(space, self.goals, np.inf)
-        errors = problem.errors(np.repeat(x[None], len(active), axis=0), less)
-        place = np.argsort(errors, kind="stable")[self.begun_again // 2 % len(active)]
-        start = space.grid_at(x, less[place])
-        groups = [space.groups[q] for q in active if q != active[place]]
-        beams = sorted(b for group in groups for b in group)
-        free = self.search.task.free.model_copy(update={"actuators": beams})
-        words = f"with {np.count_nonzero(start.actuators)} actuators"
-        return replace(Space.of(start, free), training=space.training), words
-
     def _note(self, space: Space, now: Scored, designs: int, words: str) -> None:
         last = self.search.steps[-1]
         self.search.note(space, now, last.iteration, last.designs + designs, ANSWERS, words)
 
     def chosen(self) -> list[Check]:
-        """Return the designs to answer with, the best first, as far as they are known."""
-        archive, grid = self.archive, self.space.grid
-        joints, ratios = archive.joints, archive.ratios
+        """Return the designs to answer with, the best first, as far as they are known.
+
+        Where an earlier run has checked enough of them, they are those.
+        """
+        archive, grid, count = self.archive, self.space.grid, self.limits.answers
+        candidates = [
+            self.known(Check(one, float(error), why=LATE, phase=ANSWERS))
+            for one, error in zip(archive.grids(grid), archive.errors, strict=True)
+        ]
+        before = [k for k, one in enumerate(candidates) if one.error_fea_mm is not None]
+        which = np.array(before if len(before) >= count else range(len(archive)))
+        joints, ratios, errors = (
+            part[which] for part in (archive.joints, archive.ratios, archive.errors)
+        )
         material = load_material(grid.material)
         net = check_designs(grid.beams, grid.fixed, joints, ratios, material).net_lengths
         costs = np.column_stack([(np.abs(ratios) * net).sum(axis=1), net.sum(axis=1)])
         distances = archive.distance(joints, ratios, joints, ratios)
-        count, errors = self.limits.answers, archive.errors
-        picked = choice(errors, costs, distances, self.good, count)
-        far = np.flatnonzero((errors > self.good) & (errors <= self.good + FAR * self.slack))
+        good, most = self.good, self.good + FAR * self.slack
+        picked = choice(errors, costs, distances, good, count)
+        far = np.flatnonzero((errors > good) & (errors <= most))
         picked += far[np.argsort(errors[far], kind="stable")].tolist()
-        checks = [self.best]
-        for k in picked[1:count]:
-            one = Grid(joints[k], grid.beams, ratios[k], grid.fixed, grid.material)
-            checks.append(self.known(Check(one, float(archive.errors[k]), why=LATE, phase=ANSWERS)))
-        return checks
+        return [self.best, *(candidates[which[k]] for k in picked[1:count])]
 
     def known(self, one: Check) -> Check:
         """Return the check of a design by finite elements, or what is given if there is none."""
@@ -240,7 +195,7 @@ class _Several:
         for t, k in enumerate(waiting):
             error = float(problem.error(points[t]))
             self._note(space, Scored(x[t], a[t], points[t], error), 1, f"answer {k + 1} is checked")
-        stop = _Either(search.cancel)
+        stop = Either(search.cancel)
         rest = (self.goals, search.engine, stop, Until(stop, self.deadline), ANSWERS)
         with ThreadPoolExecutor(min(cores(), len(waiting))) as pool:
             futures = {
@@ -332,16 +287,3 @@ def print_times(
             why = Message("answers-print", "printer", text)
             warnings += [] if why in warnings else [why]
     return machine.name, times
-
-
-class _Either:
-    """A token that is set here, or by whoever can cancel all of it."""
-
-    def __init__(self, other: Cancel | None) -> None:
-        self._own, self._other = threading.Event(), other
-
-    def set(self) -> None:
-        self._own.set()
-
-    def is_set(self) -> bool:
-        return self._own.is_set() or (self._other is not None and self._other.is_set())

@@ -36,22 +36,28 @@ class Distance:
     Attributes:
         joints: those that may move.
         beams: those whose ratio may change.
-        length: of a beam of the design to begin with, on average, mm.
+        start: (J, 2) mm, the design to begin with, its fixed joint at the origin.
+        length: of a beam of it, on average, mm.
+        turned: whether designs that differ by a turn in the plane are the same.
     """
 
     joints: Indices
     beams: Indices
+    start: Array
     length: float
+    turned: bool = False
 
     @classmethod
-    def of(cls, space: Space) -> "Distance":
+    def of(cls, space: Space, turned: bool = False) -> "Distance":
         """Return the distance between designs of a space."""
         grid = space.grid
         start, end = grid.joints[grid.beams[:, 0]], grid.joints[grid.beams[:, 1]]
         return cls(
             np.flatnonzero((space.motions != 0).any(axis=(0, 2))),
             np.array(sorted(b for group in space.groups for b in group), dtype=np.int64),
+            grid.joints,
             float(np.linalg.norm(end - start, axis=1).mean()),
+            turned,
         )
 
     def __call__(self, joints: Array, ratios: Array, others: Array, their_ratios: Array) -> Array:
@@ -68,9 +74,18 @@ class Distance:
             a, b = ratios[:, self.beams], their_ratios[:, self.beams]
             away += np.abs(a[:, None] - b).mean(axis=-1)
         if len(self.joints):
-            p, q = joints[:, self.joints], others[:, self.joints]
+            p, q = (self._placed(part)[:, self.joints] for part in (joints, others))
             away += np.linalg.norm(p[:, None] - q, axis=-1).mean(axis=-1) / self.length
         return away
+
+    def _placed(self, joints: Array) -> Array:
+        """Return joints (T, J, 2), turned to fit the design to begin with if turns do not count."""
+        if not self.turned or not len(joints):
+            return joints
+        z = joints @ np.array([1, 1j])
+        turn = (np.conj(z) * (self.start @ np.array([1, 1j]))).sum(axis=1)
+        z *= (turn / np.maximum(np.abs(turn), 1e-12))[:, None]
+        return np.stack([z.real, z.imag], axis=-1)
 
     def between(self, one: Grid, other: Grid) -> float:
         """Return the distance between two grids."""
@@ -124,6 +139,13 @@ class Archive:
                 self.errors = np.concatenate([self.errors[far], errors[one]])
         if len(self) > self.most:
             self._keep(np.argsort(self.errors, kind="stable")[: self.most])
+
+    def grids(self, like: Grid) -> list[Grid]:
+        """Return the designs as grids, all else being as in another."""
+        return [
+            Grid(joints, like.beams, ratios, like.fixed, like.material)
+            for joints, ratios in zip(self.joints, self.ratios, strict=True)
+        ]
 
     def _keep(self, which: Indices) -> None:
         self.joints, self.ratios = self.joints[which], self.ratios[which]

@@ -76,7 +76,8 @@ class Answer:
     @property
     def words(self) -> str:
         """What it takes, in a line."""
-        parts = [f"{self.actuators} actuators of {self.actuator_mm:.0f} mm in all"]
+        many = "actuator" if self.actuators == 1 else "actuators"
+        parts = [f"{self.actuators} {many} of {self.actuator_mm:.0f} mm in all"]
         if self.print_seconds is not None:
             parts.append(f"printed in {self.print_seconds / 60:.0f} min")
         if self.share is not None:

@@ -152,7 +152,7 @@ class Search:
         warnings = [*self.task.warnings, *out_of_reach(start, goals), *unknown]
         space = Space.of(start, self.task.free, getattr(self.engine, "training", None))
         if self.task.limits.answers > 1:
-            self.archive = Archive(Distance.of(space))
+            self.archive = Archive(Distance.of(space, turned=goals.pose is not None))
         goals, now = self._started(space, goals)
         interrupted = False
         best = of_prints = nominal = None

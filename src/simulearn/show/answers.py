@@ -87,7 +87,8 @@ def _head(fig: Figure, k: int, one: Answer) -> None:
     width, height = fig.get_size_inches()
     by = "by the engine" if one.check.error_fea_mm is None else "by finite elements"
     beaten = "" if one.on_front else "   (beaten)"
-    lines = [by, f"{one.actuators} actuators, {one.actuator_mm:.0f} mm"]
+    many = "actuator" if one.actuators == 1 else "actuators"
+    lines = [by, f"{one.actuators} {many}, {one.actuator_mm:.0f} mm"]
     if one.print_seconds is not None:
         share = "" if one.share is None else f", {100 * one.share:.0f} % within"
         lines.append(f"{one.print_seconds / 60:.0f} min to print{share}")

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from simulearn.errors import Cancel, ComputationError, InputError, stop_if
+from simulearn.errors import Cancel, ComputationError, Either, InputError, stop_if
 from simulearn.extras import require
 from simulearn.files import cores
 from simulearn.grid import Grid, make
@@ -82,7 +82,7 @@ class Engine:
                 stop_if(cancel)
                 yield k, self._one(one, frames.of(k), cancel)
             return
-        either = _Either(cancel)
+        either = Either(cancel)
         with ThreadPoolExecutor(min(self.workers or cores(), len(valid))) as pool:
             futures = {
                 pool.submit(self._one, one, frames.of(k), either): k for k, one in valid.items()
@@ -155,19 +155,6 @@ class _Frames:
         with self._lock:
             self._done[place] = round(done * FRAMES / total)
             self._progress(sum(self._done.values()), self._total)
-
-
-class _Either:
-    """A token that is set here, or by whoever can cancel all of it."""
-
-    def __init__(self, other: Cancel | None) -> None:
-        self._own, self._other = threading.Event(), other
-
-    def set(self) -> None:
-        self._own.set()
-
-    def is_set(self) -> bool:
-        return self._own.is_set() or (self._other is not None and self._other.is_set())
 
 
 def _cancelled_by_frame(simulate_grid: Solver) -> Solver:
