@@ -23,7 +23,7 @@ def test_json_has_the_agreed_keys_and_is_read_again(tmp_path):
     data = json.loads(path.read_text())
     assert list(data) == [
         *("schema", "grid", "engine", "joints", "beams", "seconds"),
-        *("stable", "bound_mm", "snaps", "warnings", "material", "model"),
+        *("stable", "bound_mm", "snaps", "warnings", "material", "model", "collisions"),
     ]
     assert data["schema"] == "simulearn.result/1"
     again = read_json(path)

@@ -90,9 +90,9 @@ def qualities(result: Result) -> dict[str, Any]:
         "bound_mm": None if result.bound_mm is None else round(result.bound_mm, DIGITS),
         "snaps": [dataclasses.asdict(snap) for snap in result.snaps],
         "warnings": [dataclasses.asdict(message) for message in result.warnings],
-        "collisions": [_collision_to_dict(one) for one in result.collisions],
         "material": {"name": result.material.name, "digest": result.material.digest},
         "model": None if model is None else {"name": model.name, "digest": model.digest},
+        "collisions": [_collision_to_dict(one) for one in result.collisions],
         **({} if result.scatter is None else {"scatter": spread_to_dict(result.scatter)}),
     }
 
