@@ -23,6 +23,7 @@ PAGES: dict[str, str | list[str]] = {
     "simulate": "simulearn.simulate",
     "inverse": "simulearn.inverse",
     "tile": "simulearn.tile",
+    "surfaces": "simulearn.surfaces",
     "fabricate": "simulearn.fabricate",
     "drawings": [
         "simulearn.drawings.importing.imported",

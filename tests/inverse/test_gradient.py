@@ -8,11 +8,14 @@ import pytest
 from simulearn.errors import InputError
 from simulearn.grid import Grid, make
 from simulearn.inverse import Goals, Space, Vertex
+from simulearn.inverse.goals import Part
 from simulearn.inverse.gradient import fitting_slopes, gradient, lbfgs
+from simulearn.inverse.kinds import OnSet
 from simulearn.inverse.problem import Problem
 from simulearn.inverse.scoring import places
 from simulearn.inverse.task import Free
 from simulearn.simulate import engine
+from simulearn.surfaces import Plane, surface_of_heights
 
 TIGHT = 1e-9  # mm
 
@@ -22,7 +25,8 @@ def learned():
     return engine("beams")
 
 
-def test_the_gradient_is_the_slope_of_the_error(learned):
+@pytest.mark.parametrize("kind", ["points", "surface and plane"])
+def test_the_gradient_is_the_slope_of_the_error(learned, kind):
     plain = make("flat", (1, 1), 55.0)
     joints = plain.joints + np.array([[0, 0], [3, -4], [5, 2], [-2, 6]])
     grid = Grid(joints, plain.beams, [0.75, -0.5, 1.0, -0.25], 0)
@@ -31,6 +35,14 @@ def test_the_gradient_is_the_slope_of_the_error(learned):
     vertices.append(Vertex("beam", 3, None, 2))
     targets = np.array([[50, 50, 9.0], [40, 5, 3], [0, 20, 7], [30, 40, 5]])
     goals = Goals.of(vertices, targets, [1, 2, 3, 4])
+    if kind != "points":
+        waves = surface_of_heights("9+sin(x/9)+y*y/300", (-90, 90), (-90, 90), 1.0)
+        plane = Plane.of([0, 0, 5], [1, 1, 3])
+        parts = [
+            Part(OnSet(waves, "surface"), tuple(vertices[:2]), np.array([1.0, 2])),
+            Part(OnSet(plane, "plane"), tuple(vertices[2:]), np.array([3.0, 4])),
+        ]
+        goals = Goals.together(parts)
     model = learned.bundle.model
 
     def error(x, a):

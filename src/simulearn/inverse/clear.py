@@ -6,7 +6,7 @@ touch, clearance added, is what is left to do.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ Indices = NDArray[np.int64]
 BALLS = 9  # along a beam
 PIECES = 4  # of a course, taken as straight
 AT_ONCE = 50_000  # pairs of beams that are compared at once
+PAIRS = 2_000_000  # of which it is seen at once whether they are near
 
 
 def _course(count: int) -> Array:
@@ -184,18 +185,25 @@ class ClearOfItself(Wanted):
     def _touching(self, points: Array) -> Touch:
         """Return the pairs that are too close, of sections' centres (T, 3 B, 3)."""
         near = self.clearance + 2 * self.radius
+        few = max(1, PAIRS // max(len(self.pairs), 1))
+        parts = [self._of_shapes(points[k : k + few], k, near) for k in range(0, len(points), few)]
+        return _joined(parts)
+
+    def _of_shapes(self, points: Array, first: int, near: float) -> Touch:
+        """Return the pairs of some shapes, whose numbers begin with the first."""
         nodes = np.einsum("ks,tbsc->tbkc", NODES, points.reshape(len(points), -1, 3, 3))
         middle = nodes.mean(axis=2)
         reach = np.linalg.norm(nodes - middle[:, :, None], axis=-1).max(axis=2)
         one, other = self.pairs.T
         gap = np.linalg.norm(middle[:, one] - middle[:, other], axis=-1)
         shape, pair = np.nonzero(gap < reach[:, one] + reach[:, other] + near)
-        parts = [
-            self._of_pairs(nodes, shape[k : k + AT_ONCE], pair[k : k + AT_ONCE], near)
-            for k in range(0, max(len(shape), 1), AT_ONCE)
-        ]
-        names = ("shape", "beams", "deep", "shares", "apart")
-        return Touch(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        touch = _joined(
+            [
+                self._of_pairs(nodes, shape[k : k + AT_ONCE], pair[k : k + AT_ONCE], near)
+                for k in range(0, max(len(shape), 1), AT_ONCE)
+            ]
+        )
+        return replace(touch, shape=touch.shape + first)
 
     def _of_pairs(self, nodes: Array, shape: Indices, pair: Indices, near: float) -> Touch:
         beams = self.pairs[pair]
@@ -215,6 +223,11 @@ class ClearOfItself(Wanted):
         touch = distance < near
         every = (shape, beams, near - distance, shares, apart)
         return Touch(*(part[touch] for part in every))
+
+
+def _joined(parts: Sequence[Touch]) -> Touch:
+    names = [one.name for one in fields(Touch)]
+    return Touch(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def _at(piece: Indices, share: Array) -> Array:

@@ -55,11 +55,13 @@ class Goals:
         offset: (V, 3) mm, from where vertices will be to where an engine has them.
         pose: the rigid motion at which the best one is looked for, where the shape may be placed
             anywhere; None where it is seen from the fixed joint.
+        shapes: how many shapes the goals are of, each with the same ones and a motion of its own.
     """
 
     parts: tuple[Part, ...]
     offset: Array
     pose: Place | None = None
+    shapes: int = 1
 
     @classmethod
     def of(
@@ -174,7 +176,8 @@ class Goals:
     def repeated(self, count: int) -> "Goals":
         """Return the goals of so many shapes together, those of one after those of another."""
         parts = tuple(replace(part, weights=part.weights / count) for part in self.parts)
-        return replace(self, parts=parts * count, offset=np.tile(self.offset, (count, 1)))
+        offset = np.tile(self.offset, (count, 1))
+        return replace(self, parts=parts * count, offset=offset, shapes=count)
 
     def begun(self, points: Array) -> "Goals":
         """Return the goals of a search whose first design has points (V, 3) mm.
@@ -261,7 +264,11 @@ class Goals:
     def _placed(self, points: Array) -> Array:
         """Return points (T, V, 3) less the offset, after the best motion where there is one."""
         here = points - self.offset
-        return here if self.pose is None else moved(here, *self._poses(here))
+        if self.pose is None:
+            return here
+        one = replace(self, parts=self.parts[: len(self.parts) // self.shapes], shapes=1)
+        each = here.reshape(-1, here.shape[1] // self.shapes, 3)
+        return moved(each, *one._poses(each)).reshape(here.shape)
 
     def _poses(self, here: Array, starts: Sequence[Place] = ()) -> tuple[Array, Array]:
         assert self.pose is not None

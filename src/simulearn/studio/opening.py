@@ -32,6 +32,7 @@ OPENED = "the studio opens grids, tasks, results, documents and drawings"
 ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj", ".html")
 # What a search begins from may not have; it is no error in a drawing.
 REMOVABLE = ("dangling-beam", "unused-joint")
+FILES = "surface-path"  # a goal on a surface that only the command line can read
 
 
 def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, Any]:
@@ -138,7 +139,7 @@ def _of_task(data: Any) -> dict[str, Any]:
     try:
         task = task_from_dict(data)
     except InputError as error:
-        if error.code not in REMOVABLE:
+        if error.code not in (*REMOVABLE, FILES):
             raise
         task = Task.model_validate(data)
     messages = []

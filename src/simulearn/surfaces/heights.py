@@ -18,7 +18,7 @@ from simulearn.surfaces.surface import Surface
 Array = NDArray[np.float64]
 
 MOST_LETTERS = 1000  # of an expression
-MOST_POINTS = 2000  # along a side
+MOST_POINTS = 700  # along a side
 USUAL_POINTS = 201  # along a side
 FUNCTIONS: dict[str, tuple[Callable[..., Any], int]] = {  # and how many arguments
     **{name: (getattr(np, name), 1) for name in ("sin", "cos", "tan", "sinh", "cosh", "tanh")},

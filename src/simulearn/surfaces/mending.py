@@ -40,7 +40,9 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
     known = np.all((faces >= 0) & (faces < len(vertices)), axis=1)
     sound = known & np.all(there[np.where(known[:, None], faces, 0)], axis=1)
-    faces = _kept(faces, sound, "have corners that are no finite numbers", "not-finite", messages)
+    faces = _kept(
+        faces, sound, "have corners that are no finite numbers", "surface-not-finite", messages
+    )
     vertices, faces = _merged(vertices, faces)
     corners = vertices[faces]
     double = np.linalg.norm(
@@ -48,11 +50,11 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     )
     size = np.ptp(vertices, axis=0) if len(vertices) else np.zeros(3)
     wide = double > FLAT * (size @ size)
-    faces = _kept(faces, wide, "have no area", "degenerate", messages)
+    faces = _kept(faces, wide, "have no area", "surface-degenerate", messages)
     _, first = np.unique(_numbered(np.sort(faces, axis=1)), return_index=True)
     single = np.zeros(len(faces), bool)
     single[first] = True
-    faces = _kept(faces, single, "are there more than once", "duplicates", messages)
+    faces = _kept(faces, single, "are there more than once", "surface-duplicates", messages)
     faces = _sewn(vertices, faces)
     if not len(faces):
         why = f" ({messages[-1].message})" if messages else ""
@@ -69,7 +71,7 @@ def _kept(faces: Indices, keep: Mask, why: str, code: str, messages: list[Messag
     lost = int((~keep).sum())
     if lost:
         text = f"{lost:,} of {len(faces):,} triangles {why}; they are left out"
-        messages.append(Message(f"surface-{code}", "surface", text))
+        messages.append(Message(code, "surface", text))
     return faces[keep]
 
 
