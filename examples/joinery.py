@@ -42,6 +42,7 @@ SLIDE = 130.0  # mm, from where the side pieces come, along the corner
 WOOD, STAND = 12.0, 0.5  # mm: thickness of the panels; how far their faces are before the joints
 PANEL = (125.0, 280.0)  # mm
 PLAY = 1.5  # mm, around all that goes through a slit
+WRITTEN = (".png", ".strip.png", ".gif", ".glb")
 CAMERA = Camera(azimuth=-68.0, elevation=-22.0)
 
 
@@ -202,7 +203,7 @@ def assemble(
     return assembled
 
 
-def main(words: list[str] | None = None) -> Fit:
+def main(words: list[str] | None = None) -> tuple[Fit, Assembled]:
     """Simulate the variants at once, choose one, and check it by finite elements."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("-o", "--output", type=Path, default=Path("out/joinery"))
@@ -229,12 +230,12 @@ def main(words: list[str] | None = None) -> Fit:
         f"clearance {shape.clearance:.1f} mm"
     )
     assembled = assemble(*checked, "joinery", options.output)
-    for name in ("joinery.png", "joinery.strip.png", "joinery.gif", "joinery.glb"):
-        write_assembled(assembled, options.output / name, CAMERA)
+    for ending in WRITTEN:
+        write_assembled(assembled, options.output / f"joinery{ending}", CAMERA)
     write_grid(grids[best], options.output / "centrepiece.json")
     write_grid(narrow.grid, options.output / "side.json")
     combined(checked[0]).savefig(options.output / "centrepiece.png")
-    return shape
+    return shape, assembled
 
 
 if __name__ == "__main__":

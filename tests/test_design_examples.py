@@ -7,6 +7,8 @@ import jax
 import pytest
 from PIL import Image
 
+from simulearn.assembly import read_assembly
+
 FOLDER = Path(__file__).parent.parent / "examples"
 
 
@@ -43,10 +45,19 @@ def test_the_table_unit_reaches_its_contact_angle(tmp_path):
     assert angle == pytest.approx(60.0, abs=5.0)
     for name in ("suggestions.png", "ring.png"):
         assert (tmp_path / name).exists()
+    ring = read_assembly(tmp_path / "ring.json")
+    assert ring.distinct == (0,) * 6
 
 
-def test_the_joinery_meets_its_panels(tmp_path):
-    told = example("joinery").main(["-o", str(tmp_path), "--engine", "beams"])
-    assert told.turned == pytest.approx(90.0, abs=8.0)
-    assert told.slits[0] == pytest.approx(told.slits[1], abs=0.5)
-    assert told.clearance > 10
+def test_the_joinery_meets_its_panels_and_nothing_hits_the_wood(tmp_path, capsys):
+    joinery = example("joinery")
+    joinery.WRITTEN = (".png", ".glb")
+    shape, assembled = joinery.main(["-o", str(tmp_path), "--engine", "beams"])
+    assert shape.turned == pytest.approx(90.0, abs=8.0)
+    assert shape.slits[0] == pytest.approx(shape.slits[1], abs=0.5)
+    assert shape.clearance > 10
+    assert assembled.collisions == ()
+    assert "tight, by beams: 0 collisions" not in capsys.readouterr().out
+    with Image.open(tmp_path / "joinery.png") as picture:
+        assert picture.width == 1040
+    assert read_assembly(tmp_path / "joinery.json").obstacles[0].name == "left panel"

@@ -8,9 +8,11 @@ import pytest
 import trimesh
 
 import assembling
+import synthetic
 from simulearn.assembly import Assembly, Obstacle, Part, Step, checked, simulate_assembly, simulated
 from simulearn.errors import CancelledError
 from simulearn.rigid import Place
+from simulearn.simulate.colliding import with_collisions
 
 THICK = 4.0  # mm, of the beams
 
@@ -119,3 +121,21 @@ def test_a_place_turns_what_is_compared():
     assert found[0].depth_mm == pytest.approx(1.5, abs=0.05)
     away = Place(turned.turn, np.array([0, 0, THICK + 0.5]))
     assert flat(part("a"), Part("b", assembling.SQUARE, away)).collisions == ()
+
+
+def test_a_part_that_runs_into_itself_is_said_once_in_its_step():
+    class Coiling(assembling.Rolling):
+        """An engine that rolls grids up so far that their ends pass each other."""
+
+        def simulate(self, grids, progress=None, cancel=None):
+            results = super().simulate(grids)
+            return [with_collisions(one) for one in results]
+
+    coil = Coiling(lambda points, share: synthetic.cylinder(points, share, 0.055))
+    grid = synthetic.square_grid((3, 1))
+    parts = (Part("one", grid), Part("two", grid, assembling.at(0, 0, 500), copy_of="one"))
+    steps = (Step(("two",), 1.0), Step(("one",), 1.0))
+    found = simulate_assembly(Assembly(parts, steps), coil).collisions
+    assert {(one.names, one.step) for one in found} == {(("one", "one"), 1)}
+    assert 1.5 < found[0].time <= 2.0
+    assert "one with itself" in found[0].words

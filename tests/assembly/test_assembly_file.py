@@ -105,6 +105,7 @@ def test_without_steps_all_parts_morph_at_once():
         (["steps", 1, "slide", "b"], [0, 1], "steps[1].slide.b is [0, 1]; a slide has"),
         (["steps", 1, "sliding"], "after", 'steps[1].sliding is "after"; sliding is'),
         (["obstacles", 0, "file"], None, "obstacles[0].file is null; a file is the path"),
+        (["obstacles", 0, "name"], "a", 'obstacles[0].name is "a", as that of a part'),
         (["joined", 0], ["a", "a"], 'joined[0] is ["a", "a"]; a pair is two parts'),
         (["joined_mm"], -1, "joined_mm is -1; joined_mm is a depth"),
     ],
@@ -120,6 +121,16 @@ def test_what_is_wrong_is_one_line_with_its_place(folder, path, value, message):
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
     assert caught.value.where
+
+
+def test_a_copy_is_of_an_original_with_the_same_grid():
+    a, b = Part("a", assembling.SQUARE), Part("b", assembling.SQUARE, copy_of="a")
+    for other, message in (
+        (Part("c", assembling.SQUARE, copy_of="b"), 'copy_of is "b", a copy itself'),
+        (Part("c", assembling.NARROW, copy_of="a"), 'copy_of is "a", whose grid is another one'),
+    ):
+        with pytest.raises(InputError, match=message):
+            Assembly((a, b, other))
 
 
 def test_places_that_were_rounded_are_rotations_again(folder):

@@ -118,9 +118,9 @@ def simulated(
         for one in outcomes
     ]
     by_grid = dict(zip(first, kept, strict=True))
-    said = tuple(message for surface in around.values() for message in surface.warnings)
+    mended = tuple(message for surface in around.values() for message in surface.warnings)
     parts = tuple(by_grid[k] for k in distinct)
-    return Assembled(assembly, engine.name, parts, around, warnings=said)
+    return Assembled(assembly, engine.name, parts, around, warnings=mended)
 
 
 def checked(

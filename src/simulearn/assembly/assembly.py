@@ -118,9 +118,11 @@ class Assembly:
             raise wrong("parts", "is empty; an assembly has at least one part")
         _once([part.name for part in self.parts], "parts", ".name")
         _once([one.name for one in self.obstacles], "obstacles", ".name")
+        for k, obstacle in enumerate(self.obstacles):
+            if obstacle.name in self.places_of:
+                raise wrong(f"obstacles[{k}].name", f"is {shown(obstacle.name)}, as that of a part")
         for k, part in enumerate(self.parts):
-            if part.copy_of is not None:
-                self._known(part.copy_of, f"parts[{k}].copy_of")
+            self._check_copy(part, f"parts[{k}].copy_of")
         morphed: dict[str, str] = {}
         slid: dict[str, str] = {}
         for k, step in enumerate(self.steps):
@@ -153,6 +155,17 @@ class Assembly:
         """For each part, the first part that has the same grid."""
         first: dict[str, int] = {}
         return tuple(first.setdefault(p.grid.digest, k) for k, p in enumerate(self.parts))
+
+    def _check_copy(self, part: Part, where: str) -> None:
+        """Raise where a part is a copy of what is no part, a copy itself, or another grid."""
+        if part.copy_of is None:
+            return
+        self._known(part.copy_of, where)
+        source = self.parts[self.places_of[part.copy_of]]
+        if source.copy_of is not None:
+            raise wrong(where, f"is {shown(part.copy_of)}, a copy itself; name what it copies")
+        if source.grid.digest != part.grid.digest:
+            raise wrong(where, f"is {shown(part.copy_of)}, whose grid is another one")
 
     def _known(self, name: str, where: str) -> None:
         if name not in self.places_of:

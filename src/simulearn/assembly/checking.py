@@ -130,7 +130,7 @@ def _in_step(
     """Yield the collisions of parts that move, with each other and with all else."""
     moments = bodies.moments
 
-    def said(one: Collision, names: tuple[str, str], where: tuple[str, str]) -> PartCollision:
+    def timed(one: Collision, names: tuple[str, str], where: tuple[str, str]) -> PartCollision:
         next_one = min(one.frame + 1, len(own) - 1)
         begin, end = moments.times[own[one.frame]], moments.times[own[next_one]]
         time = float(begin + one.share * (end - begin))
@@ -142,7 +142,7 @@ def _in_step(
         for name, shape in triangles.items():
             stop_if(cancel)
             for one in against(body, shape):
-                yield said(one, (part.name, name), one.parts)
+                yield timed(one, (part.name, name), one.parts)
     stop_if(cancel)
     boxes = [_box(body) for body in moving_bodies]
     rows = [(row, body) for row in still if _near(body := bodies.at(row, own[:1]), boxes)]
@@ -158,7 +158,7 @@ def _in_step(
         order = {part.name: k for k, part, _ in (*moving, *still)}
         sides.sort(key=lambda side: order[side[0]])
         (a, where_a), (b, where_b) = sides
-        yield said(one, (a, b), (where_a, where_b))
+        yield timed(one, (a, b), (where_a, where_b))
 
 
 class _Bodies:
@@ -227,7 +227,7 @@ def _within(assembly: Assembly, present: Present, moments: Timeline) -> Iterator
     for k, part, result in present:
         if distinct[k] != k:
             continue
-        for one in getattr(result, "collisions", ()):  # TODO
+        for one in result.collisions:
             # The first moment that shows it: before the timeline, of a part that is ready.
             m = int(np.argmax(moments.frames[:, k] >= one.frame + one.share - 1e-9))
             corner = part.place(np.array(one.place)) + moments.shifts[m, k]

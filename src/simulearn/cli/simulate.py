@@ -33,6 +33,9 @@ if TYPE_CHECKING:
     from simulearn.simulate.engines import StreamingSimulator
 
 
+COLLISIONS = 5  # that the terminal names
+
+
 @app.command()
 def simulate(
     grids: Annotated[
@@ -180,8 +183,8 @@ def _many(
             data = _unread(row) if isinstance(row, InputError) else outcome_to_dict(row)
             if folder is not None:
                 kept = ("schema", "code", "where", "message", "hint", "seconds", "stable",
-                        "bound_mm", "snaps", "warnings", "material", "model",
-                        "scatter")  # fmt: skip
+                        "bound_mm", "snaps", "warnings", "collisions", "material",
+                        "model", "scatter")  # fmt: skip
                 data = {"file": str(targets[name])} | {k: data[k] for k in kept if k in data}
             listed.append({"name": name} | data)
         print(json.dumps({"engine": engine, "failed": failed, "results": listed}, allow_nan=False))
@@ -256,6 +259,7 @@ def _overview(rows: "dict[str, Outcome | InputError]") -> Table:
         numbers = summary(row)
         bound = "" if row.bound_mm is None else f"{row.bound_mm:.2f}"
         notes = [] if row.stable else ["unstable"]
+        notes += ["collides"] if row.collisions else []
         count = len(row.warnings)
         notes += [f"{count} warning" + "s" * (count > 1)] if count else []
         table.add_row(
@@ -271,8 +275,8 @@ def _overview(rows: "dict[str, Outcome | InputError]") -> Table:
 
 
 def _table(result: "Result") -> Table:
-    """Return where the joints are, flat and at the end."""
-    from simulearn.simulate import summary
+    """Return where the joints are, flat and at the end, and what collides."""
+    from simulearn.simulate import collision_text, summary
 
     numbers: dict[str, Any] = summary(result)
     motion = "rise" if numbers["rise_mm"] > 0 else "fall"
@@ -286,6 +290,10 @@ def _table(result: "Result") -> Table:
         caption += f", model {result.model}"
     if result.bound_mm is not None:
         caption += f"\nnine of ten such answers are off by less than {result.bound_mm:.2f} mm"
+    for collision in result.collisions[:COLLISIONS]:
+        caption += f"\ncollision: {collision_text(collision)}"
+    if len(result.collisions) > COLLISIONS:
+        caption += f"\nand {len(result.collisions) - COLLISIONS} more collisions"
     table = Table(
         box=None,
         title=(

@@ -17,8 +17,6 @@ from simulearn.collisions.collision import (
     part_name,
     rows_of,
 )
-from simulearn.collisions.kernels.pairs import find_pairs
-from simulearn.collisions.kernels.solid import find_in_solid
 
 OBSTACLE = "obstacle"
 
@@ -48,6 +46,8 @@ def between(bodies: Sequence[Body], least: float = LEAST) -> tuple[Collision, ..
     """
     if len(bodies) < 2:
         return ()
+    from simulearn.collisions.kernels.pairs import find_pairs  # loads the compiler
+
     beam_counts = [len(body.beams) for body in bodies]
     joint_counts = [body.joints.shape[1] for body in bodies]
     first_beam, first_joint = (np.cumsum([0, *counts]) for counts in (beam_counts, joint_counts))
@@ -96,6 +96,8 @@ def against(body: Body, triangles: Array, least: float = LEAST) -> tuple[Collisi
     triangles = numbers(triangles)
     if not len(triangles):
         return ()
+    from simulearn.collisions.kernels.solid import find_in_solid  # loads the compiler
+
     beams = len(body.beams)
     found = np.empty((beams + body.joints.shape[1], 10))
     count = find_in_solid(

@@ -15,7 +15,6 @@ from simulearn.collisions.collision import (
     part_name,
     rows_of,
 )
-from simulearn.collisions.kernels.pairs import find_pairs
 
 
 def find(
@@ -56,6 +55,8 @@ def find_all(
         ratios: (T, B).
         least: mm.
     """
+    from simulearn.collisions.kernels.pairs import find_pairs  # loads the compiler
+
     count = len(beams)
     if ratios is None:
         ratios = np.ones((len(sections), count))

@@ -26,7 +26,7 @@ from simulearn.inverse.kinds import AtPoints, OnSet
 from simulearn.palette import BEADS
 from simulearn.schedule import SCHEDULE
 from simulearn.show import style
-from simulearn.simulate import Result
+from simulearn.simulate import Result, collision_text
 from simulearn.surfaces import Curve, Surface
 
 Array = NDArray[np.float64]
@@ -106,6 +106,7 @@ def _facts(result: Result) -> dict[str, str]:
         "bound": bound,
         "stable": "yes" if result.stable else "no",
         "snaps": "; ".join(snaps) or "none",
+        "collisions": "\n".join(map(collision_text, result.collisions)) or "none",
         "warnings": "\n".join(message.message for message in result.warnings) or "none",
         "fixed joint": str(result.grid.fixed),
     }

@@ -9,10 +9,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.errors import Cancel, CancelledError, stop_if
+from simulearn.errors import Cancel, CancelledError, Message, stop_if
 from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.simulate import Failure, Outcome, Result, Simulator, engine
+from simulearn.simulate.colliding import collision_warnings
 
 Array = NDArray[np.float64]
 
@@ -57,13 +58,19 @@ class Check:
         """By finite elements where they answered in this run, else by the engine."""
         return self.fea or self.result
 
+    @property
+    def collisions(self) -> tuple[Message, ...]:
+        """The warning that parts of the shape run through each other, if they do."""
+        return () if self.shape is None else collision_warnings(self.shape.collisions)
+
     def better_than(self, other: "Check | None") -> bool:
-        """Whether finite elements prefer this one."""
-        if other is None:
-            return True
-        inf = np.inf
-        mine = inf if self.error_fea_mm is None else self.error_fea_mm
-        return mine < (inf if other.error_fea_mm is None else other.error_fea_mm)
+        """Whether finite elements prefer this one, or it is the one without collisions."""
+        return other is None or self._badness < other._badness
+
+    @property
+    def _badness(self) -> tuple[bool, bool, float]:
+        error = self.error_fea_mm
+        return error is None, bool(self.collisions), np.inf if error is None else error
 
 
 def check(

@@ -17,8 +17,11 @@ from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.scoring import Places
 from simulearn.inverse.space import Space
+from simulearn.learn.common.model import Designs
 
 Array = NDArray[np.float64]
+
+LOOKED_AT = 3  # designs of a batch that are looked at for collisions, at most
 
 
 class OutOfTime(Exception):  # noqa: N818  (no error: the best so far is kept)
@@ -46,12 +49,14 @@ class Scored:
         x, a: its point in the space, (P,) and (Q,).
         points: (V, 3) mm, where the goals' vertices come to.
         error: mm.
+        collides: whether parts of it run through each other, as far as that was looked at.
     """
 
     x: Array
     a: Array
     points: Array
     error: float
+    collides: bool = False
 
 
 @dataclass(eq=False)
@@ -68,6 +73,8 @@ class Problem:
         cancel: stops the search.
         best: so far.
         designs: how many were scored.
+        collides: whether parts of a design run through each other; None: nobody looks. Of a batch
+            only designs that would become the best are looked at, the best of them first.
     """
 
     space: Space
@@ -80,6 +87,7 @@ class Problem:
     cancel: Cancel | None = None
     best: Scored | None = None
     designs: int = field(default=0)
+    collides: Callable[[Designs], bool] | None = None
 
     def points(self, x: Array, a: Array) -> Array:
         """Return where the vertices of points (T, P), (T, Q) come to: (T, V, 3) mm.
@@ -96,10 +104,24 @@ class Problem:
             points[valid] = self.places(self.space.designs(x[valid], a[valid]))
         self.designs += len(valid)
         errors = self.error(points)
-        k = int(errors.argmin()) if len(errors) else 0
-        if len(errors) and errors[k] < (np.inf if self.best is None else self.best.error):
-            self.best = Scored(x[k].copy(), a[k].copy(), points[k], float(errors[k]))
+        self._remember(x, a, points, errors)
         return points
+
+    def _remember(self, x: Array, a: Array, points: Array, errors: Array) -> None:
+        """Keep the best design so far; one that collides only for want of others."""
+        for k in np.argsort(errors)[:LOOKED_AT]:
+            best = self.best
+            if not errors[k] < (np.inf if best is None or best.collides else best.error):
+                return
+            collides = self.looked_at(x[k], a[k])
+            if best is None or (collides, errors[k]) < (best.collides, best.error):
+                self.best = Scored(x[k].copy(), a[k].copy(), points[k], float(errors[k]), collides)
+            if not collides:
+                return
+
+    def looked_at(self, x: Array, a: Array) -> bool:
+        """Return whether parts of a design (P,), (Q,) run through each other; looks at it anew."""
+        return self.collides is not None and self.collides(self.space.designs(x[None], a[None]))
 
     def loose(self, x: Array, a: Array) -> Array:
         """Return where vertices come to when ratios are not multiples of the step: (T, V, 3) mm.
@@ -128,7 +150,10 @@ class Problem:
     def scored(self, x: Array, a: Array) -> Scored:
         """Return a single point (P,), (Q,) with what it comes to."""
         points = self.points(x[None], a[None])
-        return Scored(x, a, points[0], float(self.error(points)[0]))
+        best = self.best
+        known = best is not None and np.array_equal(best.x, x) and np.array_equal(best.a, a)
+        collides = best is not None and known and best.collides
+        return Scored(x, a, points[0], float(self.error(points)[0]), collides)
 
     def grid(self, design: Scored) -> Grid:
         """Return the grid of a design."""

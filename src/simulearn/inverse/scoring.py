@@ -33,6 +33,23 @@ def places(engine: Simulator, goals: Goals, cancel: Cancel | None = None) -> Pla
     return _one_by_one(engine, goals, cancel)
 
 
+def colliding(engine: Simulator, cancel: Cancel | None = None) -> Callable[[Designs], bool]:
+    """Return the function that says whether parts of a single design run through each other.
+
+    It simulates all frames; a design without an answer does not collide.
+
+    Args:
+        engine: the simulator.
+        cancel: stops it; the function raises CancelledError.
+    """
+
+    def collides(designs: Designs) -> bool:
+        (outcome,) = engine.simulate(grids(designs), cancel=cancel)
+        return not isinstance(outcome, Failure) and bool(outcome.collisions)
+
+    return collides
+
+
 def _together(engine: Learned, goals: Goals) -> Places:
     model = engine.bundle.model
 

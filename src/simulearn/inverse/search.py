@@ -26,7 +26,7 @@ from simulearn.inverse.keeping import ROBUST, Past, Step
 from simulearn.inverse.prints import regard_prints, without_scatter
 from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, Until, drawing
 from simulearn.inverse.reach import not_near, out_of_reach
-from simulearn.inverse.scoring import places
+from simulearn.inverse.scoring import colliding, places
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Limits, Task
 from simulearn.simulate import Simulator
@@ -164,7 +164,11 @@ class Search:
             self.seconds,
             goals,
             interrupted,
-            (*warnings, *([] if interrupted else not_near(start, error, warnings))),
+            (
+                *warnings,
+                *([] if interrupted else not_near(start, error, warnings)),
+                *([] if best is None else best.collisions),
+            ),
             of_prints,
             nominal,
         )
@@ -221,6 +225,7 @@ class Search:
             source=drawing(len(self.steps)),  # other numbers in each phase and after each stop
             until=until,
             cancel=self.cancel,
+            collides=colliding(self.engine, Until(self.cancel, until)),
         )
 
     def _searched(self, space: Space, goals: Goals, start: Scored, phase: int) -> Scored:
@@ -234,7 +239,7 @@ class Search:
         most = done + max(1, round(share * (limits.iterations - done)))
         # Targets may have moved since it was scored.
         error = float(problem.error(start.points[None])[0])
-        start = problem.best = Scored(start.x, start.a, start.points, error)
+        start = problem.best = replace(start, error=error)
         if start.error > GOOD and done < limits.iterations:
             return self.descended(problem, self.method, start, most, phase)
         return start

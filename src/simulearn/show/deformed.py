@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from simulearn.show import style
 from simulearn.show.band import bands, draw_band
 from simulearn.show.camera import Camera
-from simulearn.simulate import Result, Skin, skin, summary
+from simulearn.simulate import Result, Skin, collision_place, collision_text, skin, summary
 from simulearn.simulate.spread import Spread
 
 Array = NDArray[np.float64]
@@ -33,8 +33,18 @@ def draw_deformed(
     """Draw a frame of a result over the ghost of the flat grid."""
     draw_ghost(ax, surface, camera)
     draw_skin(ax, surface.vertices[frame], surface, result.grid.fixed, camera)
+    draw_collisions(ax, result, frame, camera)
     if result.scatter is not None and frame in (-1, len(surface.vertices) - 1):
         draw_band(ax, result.scatter, camera)
+
+
+def draw_collisions(ax: Axes, result: Result, frame: int, camera: Camera) -> None:
+    """Mark where parts have met by a frame."""
+    frame %= len(result.joints)
+    for one in result.collisions:
+        if one.first <= frame:
+            x, y = camera.see(collision_place(result, one, frame))[:2]
+            ax.plot(x, y, "o", ms=9, mfc="none", mec=style.COLLISION, mew=1.1, zorder=3)
 
 
 def draw_ghost(ax: Axes, surface: Skin, camera: Camera) -> None:
@@ -180,7 +190,12 @@ def qualified(result: Result) -> list[str]:
             f"{spread.prints} prints differ by {spread.overall:.1f} mm "
             f"({spread.percent:.1f} %, standard deviation){band}"
         )
-    others = [message for message in result.warnings if message.code != "snap"]
+    if result.collisions:
+        count = len(result.collisions)
+        more = f" and {count - 1} more" if count > 1 else ""
+        words.append(f"collides: {collision_text(result.collisions[0])}{more}")
+    said = ("snap", "beams-pass")
+    others = [message for message in result.warnings if message.code not in said]
     if len(others) == 1:
         words.append(others[0].message)
     elif others:

@@ -22,8 +22,8 @@ from simulearn.palette import BOTTOM, TOP
 
 PASSIVE, JOINT, FIXED = "#dcdcdc", "#a6a6a6", "#3a3a3a"
 SOLID = "#e3d6c1"  # of an obstacle
-COLLISION = "#c8102e"  # the ring where parts run through each other
 GHOST, GHOST_LINE = "#f0f0f0", "#cfcfcf"
+COLLISION = "#c8102e"  # the ring where parts run through each other
 INK, LINE = "#262626", "#4d4d4d"
 PALEST = 0.42  # of the full hue, the tint of a very short actuator
 PLAIN = ("black", "k", "#000000")  # the colours of a text that nobody coloured

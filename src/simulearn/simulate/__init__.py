@@ -4,6 +4,7 @@ import sys
 from types import ModuleType
 from typing import Any
 
+from simulearn.simulate.colliding import collision_place, collision_text
 from simulearn.simulate.engines import ENGINES, engine
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result, one, results
 from simulearn.simulate.resultfile import (
@@ -29,6 +30,8 @@ __all__ = [
     "Result",
     "Simulator",
     "Skin",
+    "collision_place",
+    "collision_text",
     "engine",
     "failure_to_dict",
     "one",

@@ -19,7 +19,7 @@ from simulearn.extras import require
 from simulearn.files import cores
 from simulearn.grid import Grid, make
 from simulearn.simulate.checked import Checked, check_all
-from simulearn.simulate.passing import passing
+from simulearn.simulate.colliding import with_collisions
 from simulearn.simulate.result import FRAMES, Failure, Outcome, Result, results
 from simulearn.simulate.simulator import Progress, Simulator
 
@@ -104,9 +104,7 @@ class Engine:
             trial = self.solver(one.grid, one.material, progress=progress, cancel=cancel)
         except (ComputationError, InputError) as error:
             return Failure.of(one.given, error, _likely(one))
-        thickness = one.material.section.thickness
-        (through,) = passing(np.asarray(trial.beams)[-1:], one.grid.beams, thickness)
-        return Result(
+        result = Result(
             grid=one.grid,
             engine=self.name,
             joints=np.asarray(trial.joints),
@@ -116,11 +114,12 @@ class Engine:
             material=one.material.identity,
             stable=trial.stable,
             snaps=trial.snaps,
-            warnings=(*one.warnings, *trial.warnings, *through),
+            warnings=(*one.warnings, *trial.warnings),
             record=dict(trial.record),
             solid=trial.solid,
             displacements=np.asarray(trial.displacements),
         )
+        return with_collisions(result)
 
 
 def in_order(outcomes: Iterator[tuple[int, Outcome]], count: int) -> list[Outcome]:

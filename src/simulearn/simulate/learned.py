@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from simulearn.collisions import Collision, find_all
 from simulearn.errors import Cancel, InputError, Message, stop_if
 from simulearn.grid import Grid, TrainingRange, make
 from simulearn.learn.common.bundle import Bundle, bundle_of
@@ -17,8 +18,8 @@ from simulearn.learn.common.model import Designs, Frames, last_frame
 from simulearn.material import Material
 from simulearn.schedule import FRAMES, Snap
 from simulearn.simulate.checked import Checked, check_all
+from simulearn.simulate.colliding import collision_warnings
 from simulearn.simulate.engines import in_order
-from simulearn.simulate.passing import passing
 from simulearn.simulate.result import Failure, Outcome, Result
 from simulearn.simulate.simulator import Progress
 
@@ -100,23 +101,27 @@ class Learned:
         small = make("flat", (1, 1), 50.0)
         for count in (1, 4):
             designs = designs_of([small] * count, self.material)
-            self.bundle.model.rollout(designs)
+            frames = self.bundle.model.rollout(designs)
+            find_all(frames.joints, frames.sections, designs.beams, designs.actuators)
             last_frame(self.bundle.model, designs)
 
     def _answers(self, batch: Sequence[tuple[int, Checked]]) -> Iterator[tuple[int, Outcome]]:
         """Yield the outcomes of designs of one topology."""
         begun = time.perf_counter()
-        frames = self.bundle.model.rollout(
-            designs_of([one.grid for _, one in batch], batch[0][1].material)
-        )
+        designs = designs_of([one.grid for _, one in batch], batch[0][1].material)
+        frames = self.bundle.model.rollout(designs)
         seconds = (time.perf_counter() - begun) / len(batch)
-        thickness = batch[0][1].material.section.thickness
-        through = passing(frames.sections[:, -1], batch[0][1].grid.beams, thickness)
+        collisions = find_all(frames.joints, frames.sections, designs.beams, designs.actuators)
         for t, (k, one) in enumerate(batch):
-            yield k, self._outcome(one, frames, t, seconds, through[t])
+            yield k, self._outcome(one, frames, t, seconds, collisions[t])
 
     def _outcome(
-        self, one: Checked, frames: Frames, t: int, seconds: float, through: tuple[Message, ...]
+        self,
+        one: Checked,
+        frames: Frames,
+        t: int,
+        seconds: float,
+        collisions: tuple[Collision, ...],
     ) -> Outcome:
         joints, sections = frames.joints[t], frames.sections[t]
         if not (frames.converged[t] and np.isfinite(joints).all() and np.isfinite(sections).all()):
@@ -143,8 +148,9 @@ class Learned:
                 *_left_balance(frames, t),
                 *_after_snap(snaps),
                 *_beyond(bound, one.grid),
-                *through,
+                *collision_warnings(collisions),
             ),
+            collisions=collisions,
             record={"kind": self.bundle.card.kind},
         )
 

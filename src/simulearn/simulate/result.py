@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.collisions.collision import Collision
 from simulearn.display import Displayed
 from simulearn.errors import ComputationError, InputError, Message
 from simulearn.grid import Grid
@@ -47,6 +48,7 @@ class Result(Displayed):
             None for an engine that does not estimate its error.
         snaps: sudden motions to another equilibrium, in the order in which they happen.
         warnings: about the design and the answer.
+        collisions: parts that run through each other, the deepest first.
         record: of the solver's work, for example iterations per frame.
         solid: the solid mesh, where the engine has one.
         displacements: (12, N, 3) of the solid's nodes from the flat grid.
@@ -65,6 +67,7 @@ class Result(Displayed):
     bound_mm: float | None = None
     snaps: tuple[Snap, ...] = ()
     warnings: tuple[Message, ...] = ()
+    collisions: tuple[Collision, ...] = ()
     record: dict[str, Any] = field(default_factory=dict)
     solid: Solid | None = None
     displacements: NDArray[np.float64] | None = None

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.collisions import Collision
 from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
@@ -35,7 +36,7 @@ UNITS = {
     "seconds": "s; time the simulation took",
     "record": "JSON; of the solver's work",
     "qualities": "JSON; stable, bound_mm (mm), snaps (released fraction, frame), warnings, "
-    "material and model (name, SHA-256), scatter (mm)",
+    "collisions (mm), material and model (name, SHA-256), scatter (mm)",
     "displacements": "mm; frame, node of the solid, xyz",
     "solid_nodes": "mm; node, xyz, in the flat grid",
     "solid_bricks": "node indices; brick, 20 nodes in the order of scikit-fem's ElementHexS2",
@@ -89,6 +90,7 @@ def qualities(result: Result) -> dict[str, Any]:
         "bound_mm": None if result.bound_mm is None else round(result.bound_mm, DIGITS),
         "snaps": [dataclasses.asdict(snap) for snap in result.snaps],
         "warnings": [dataclasses.asdict(message) for message in result.warnings],
+        "collisions": [_collision_to_dict(one) for one in result.collisions],
         "material": {"name": result.material.name, "digest": result.material.digest},
         "model": None if model is None else {"name": model.name, "digest": model.digest},
         **({} if result.scatter is None else {"scatter": spread_to_dict(result.scatter)}),
@@ -142,6 +144,7 @@ def _qualities(data: dict[str, Any], grid: Grid) -> dict[str, Any]:
         "bound_mm": None if bound is None else float(bound),
         "snaps": _read_all(data, "snaps", Snap),
         "warnings": _read_all(data, "warnings", Message),
+        "collisions": tuple(_collision(row) for row in _rows(data, "collisions")),
         "scatter": spread_from_dict(data["scatter"], grid) if data.get("scatter") else None,
     }
 
@@ -157,10 +160,39 @@ def _read(data: dict[str, Any], key: str, kind: type, default: Any) -> Any:
 
 def _read_all(data: dict[str, Any], key: str, kind: type) -> tuple[Any, ...]:
     """Return the objects of a type that a key lists."""
+    return tuple(_read({key: row}, key, kind, None) for row in _rows(data, key))
+
+
+def _rows(data: dict[str, Any], key: str) -> list[Any]:
+    """Return the list that a key holds, an empty one where there is none."""
     rows = data.get(key, [])
     if not isinstance(rows, list):
         raise InputError(f"{key}: is not a list", "result", key)
-    return tuple(_read({key: row}, key, kind, None) for row in rows)
+    return rows
+
+
+def _collision_to_dict(one: Collision) -> dict[str, Any]:
+    return {
+        "parts": list(one.parts),
+        "frame": one.frame,
+        "share": round(one.share, DIGITS),
+        "first": one.first,
+        "depth_mm": round(one.depth_mm, DIGITS),
+        "place": [round(x, DIGITS) + 0.0 for x in one.place],
+    }
+
+
+def _collision(row: Any) -> Collision:
+    try:
+        a, b = (str(part) for part in row["parts"])
+        x, y, z = (float(x) for x in row["place"])
+        share, depth = float(row["share"]), float(row["depth_mm"])
+        return Collision((a, b), int(row["frame"]), share, int(row["first"]), depth, (x, y, z))
+    except (KeyError, TypeError, ValueError) as error:
+        fields = "parts, frame, share, first, depth_mm and place"
+        raise InputError(
+            f"collisions: is not a list of objects with {fields}", "result", "collisions"
+        ) from error
 
 
 def write_json(outcome: Outcome, path: Path | str) -> None:

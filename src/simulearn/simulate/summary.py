@@ -19,7 +19,7 @@ def summary(result: Result) -> dict[str, Any]:
         seconds: time the simulation took.
         iterations: iterations of the solver in all, where the engine counts them.
         mesh, bricks: name of the mesh and its number of bricks, where the engine has one.
-        stable, bound_mm, snaps, warnings, material, model: see `Result`.
+        stable, bound_mm, snaps, warnings, collisions, material, model: see `Result`.
         scatter: how prints differ, where that was computed.
     """
     flat, last = result.centres[0], result.centres[-1]

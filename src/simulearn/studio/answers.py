@@ -166,6 +166,17 @@ class SnapFacts(_Answer):
     frame: int
 
 
+class CollisionFacts(_Answer):
+    """Two parts of a grid that run through each other, at their worst moment."""
+
+    parts: Annotated[list[str], Field(description="such as beam 3 and joint 7")]
+    frame: Annotated[int, Field(description="the worst, or the one before the worst moment")]
+    share: Annotated[float, Field(description="of the time to the next frame; 0 in a frame")]
+    first: Annotated[int, Field(description="first frame after contact has begun")]
+    depth_mm: float
+    place: Point
+
+
 class JointSpread(_Answer):
     """How prints differ at a joint, mm; `simulearn.simulate.spread` says more."""
 
@@ -204,6 +215,9 @@ class ResultAnswer(_Answer):
     bound_mm: float | None
     snaps: list[SnapFacts]
     warnings: list[MessageBody]
+    collisions: Annotated[
+        list[CollisionFacts], Field(description="the deepest first; no engine knows of contact")
+    ]
     material: Identity
     model: Identity | None
     scatter: Annotated[

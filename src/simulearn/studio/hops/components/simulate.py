@@ -1,5 +1,9 @@
 """Simulate: the shape that a grid takes in hot water."""
 
+import numpy as np
+from numpy.typing import NDArray
+
+from simulearn.simulate import Result, collision_place, collision_text
 from simulearn.studio.hops import meshes
 from simulearn.studio.hops.components.shared import (
     ENGINE,
@@ -22,6 +26,7 @@ from simulearn.studio.hops.parameters import (
     MESH,
     NUMBER,
     POINT,
+    TEXT,
     Component,
     Input,
     Output,
@@ -58,11 +63,19 @@ def run(inputs: Inputs, context: Context) -> Outputs:
             "Ratios": result.grid.actuators.tolist(),
             "Bound": [] if bound is None else [design.placement.length(bound)],
             "Stable": [result.stable],
+            "Collisions": [collision_text(one) for one in result.collisions],
+            "Contacts": design.outside(_places(result, frame)),
             "Messages": [*warnings, *design.texts],
             "Grid": [as_json(design.grid)],
         },
         warnings=[*warnings, *design.warnings],
     )
+
+
+def _places(result: Result, frame: int) -> NDArray[np.float64]:
+    """Return where parts collide in a frame, (N, 3) mm."""
+    met = [collision_place(result, one, frame) for one in result.collisions if one.first <= frame]
+    return np.array(met).reshape(-1, 3)
 
 
 COMPONENT = Component(
@@ -80,6 +93,8 @@ COMPONENT = Component(
         Output("Stable", "S", "Whether every frame is a stable balance.", BOOLEAN),
         MESSAGES,
         GRID,
+        Output("Collisions", "C", "Parts that run through each other, the deepest first.", TEXT),
+        Output("Contacts", "Cp", "Where they do, those that have met by the frame.", POINT),
     ),
     run,
 )

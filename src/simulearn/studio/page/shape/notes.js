@@ -8,7 +8,7 @@ import { dimensionItems } from "./dimensions.js";
 import { dragged, gizmoItems, LENGTH } from "./gizmo.js";
 import { skinBounds } from "./skin.js";
 import { centreAt } from "./topology.js";
-import { number } from "./words.js";
+import { number, partOf } from "./words.js";
 
 const MOST_HEIGHTS = 40; // numbers that are still read
 const MOST_DOTS = 160; // points that are offered: above, beams have none
@@ -21,8 +21,19 @@ export function noteItems(viewer, result, { goals }) {
   const items = [];
   if (view.dimensions) items.push(...dimensionItems(skinBounds(viewer.body.skin), mm));
   if (view.heights) items.push(...heightItems(result));
+  items.push(...collisionItems(result));
   if (goals) items.push(...pointItems(result), ...targetItems(result));
   return items;
+}
+
+/** A ring where parts have met by the frame; the place of the worst moment goes along with the part. */
+function collisionItems(result) {
+  return (result.collisions ?? []).filter(({ first }) => first <= view.frame).map((one, k) => {
+    const [{ kind, index }] = one.parts.map((part) => partOf(result, part));
+    const [then, now] = [one.frame + one.share, view.frame].map((frame) => centreAt(result, kind, index, frame));
+    const at = one.place.map((x, axis) => x + now[axis] - then[axis]);
+    return { id: `collision-${k}`, kind: "ring", className: "note-collision", at };
+  });
 }
 
 function heightItems(result) {

@@ -6,6 +6,8 @@ import { t } from "../text/text.js";
 import { momentOf } from "./timeline.js";
 import { boundsOf, LAST } from "./topology.js";
 
+const NAMED = 3; // collisions that are named
+
 /** Return a number as the language writes it. */
 export const number = (value, digits = 1) => formatNumber(value, view.language, digits);
 
@@ -13,6 +15,17 @@ export const number = (value, digits = 1) => formatNumber(value, view.language, 
 export function moment(frame) {
   const { key, values } = momentOf(frame);
   return t(`shape.${key}`, values);
+}
+
+/** Return { kind, number } of a part such as "beam 3" of a result, as the drawing numbers it. */
+export function partOf(result, part) {
+  const [kind, number] = part.split(" ");
+  return { kind, number: result[`${kind}_numbers`]?.[number] ?? Number(number), index: Number(number) };
+}
+
+function partName(result, part) {
+  const { kind, number: k } = partOf(result, part);
+  return t(`shape.part-${kind}`, { number: k });
 }
 
 /** Return what a result does in a few words: { title, size, near, notes: [{ kind, text }] }. */
@@ -26,6 +39,13 @@ export function summaryOf(result) {
   if (!result.stable) notes.push({ kind: "warning", text: t("shape.unstable") });
   for (const { released } of result.snaps ?? [])
     notes.push({ kind: "warning", text: t("shape.snaps", { percent: number(100 * released, 0) }) });
+  for (const { parts, frame, share, depth_mm: mm } of (result.collisions ?? []).slice(0, NAMED)) {
+    const [a, b] = parts.map((part) => partName(result, part));
+    const when = moment(share < 0.5 ? frame : frame + 1);
+    notes.push({ kind: "warning", text: t("shape.collide", { a, b, when, mm: number(mm) }) });
+  }
+  const more = (result.collisions?.length ?? 0) - NAMED;
+  if (more > 0) notes.push({ kind: "warning", text: t("shape.moreCollide", { count: more }) });
   return {
     title: t(flat ? "shape.staysFlat" : rise > 0 ? "shape.rises" : "shape.falls", {
       mm: number(Math.abs(rise)),
