@@ -14,6 +14,7 @@ from modules import RING, command, here, pretended, ring
 from PIL import Image
 
 from simulearn.assembly import read_assembly
+from simulearn.dataset import cluster_workers
 from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.fabricate.bill import bill_of, bill_text
 from simulearn.grid import read_grid
@@ -113,6 +114,16 @@ def test_a_bridge_is_tiled_between_its_edges():
     chart = between([[0, 0, 0], [60, 0, 0]], [[0, 60, 8], [60, 60, 8]], [0, 60, 20], [0, 60, -4])
     result = tile(from_chart(chart, (1, 1), (1, 1)), SMALL, None, here())
     assert result.fit.error_mm < 1.0
+
+
+def test_a_cluster_searches_too():
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        team = cluster_workers(cluster.scheduler_address, work=pretended)
+        result = tile(shell(), replace(SMALL, rounds=0), None, team)
+    assert len(result.answers) == len(result.grids) > 2
 
 
 def test_a_token_stops_it():

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 ROUNDS = 20  # of placing and moving, at most
 STILL = 1e-3  # mm that targets move at the end
+PRESS = 3.0  # by so much more counts a joint whose gap is as wide as is asked for
 WEIGHT = 2.0  # of a shared joint in a search; of others 1
 
 
@@ -95,6 +96,22 @@ def weights(tiling: Tiling, members: Sequence[Member], kinds: int) -> Array:
     for member, points in zip(members, tiling.modules, strict=True):
         own = np.where(tiling.shared[points], WEIGHT, 1.0)
         counts[member.kind, member.order] = np.maximum(counts[member.kind, member.order], own)
+    return counts
+
+
+def pressed(tiling: Tiling, members: Sequence[Member], weights: Array, wide: Array) -> Array:
+    """Return weights (kinds, K) that count joints more, the wider their gaps are.
+
+    Args:
+        tiling: the patches.
+        members: how each is of its kind.
+        weights: (kinds, K) to begin with.
+        wide: (N,) gaps over the one that is asked for.
+    """
+    most = np.zeros_like(weights)
+    for member, points in zip(members, tiling.modules, strict=True):
+        most[member.kind, member.order] = np.maximum(most[member.kind, member.order], wide[points])
+    counts: Array = weights * (1 + PRESS * most**2)
     return counts
 
 

@@ -26,7 +26,7 @@ from simulearn.simulate.calls import warm
 from simulearn.simulate.learned import Learned
 from simulearn.tile.alike import Member, alike, averaged
 from simulearn.tile.asking import Asking
-from simulearn.tile.borders import Fit, fit, weights
+from simulearn.tile.borders import Fit, fit, pressed, weights
 from simulearn.tile.flatten import arcs
 from simulearn.tile.patches import Tiling
 from simulearn.tile.searching import ModuleAnswer, ModuleJob, run
@@ -119,7 +119,7 @@ class _Rounds:
 
     def _first(self) -> list[ModuleAnswer]:
         """Return the answers of the first search of every kind."""
-        jobs = [self._job(k, targets, 1) for k, targets in enumerate(self.kinds)]
+        jobs = [self._job(k, t, self.weights[k], 1) for k, t in enumerate(self.kinds)]
         found = self.asking.answers(0, jobs, final=True)
         for k, answer in enumerate(found):
             if answer is None or answer.grid is None:
@@ -144,26 +144,32 @@ class _Rounds:
             }
         )
         targets = averaged(now.targets[self.tiling.modules], self.members, self.kinds)
-        jobs = [self._job(k, targets[k], 0, answers[k]) for k in chosen]
+        counts = pressed(self.tiling, self.members, self.weights, now.gaps / self.settings.gap_mm)
+        jobs = [self._job(k, targets[k], counts[k], 0, answers[k]) for k in chosen]
         after, changed = list(answers), False
         for k, answer in zip(chosen, self.asking.answers(number, jobs), strict=True):
             if answer is None:
                 continue
             self.searching += answer.seconds
-            old = _away(answers[k], targets[k], self.weights[k])
-            if answer.grid is not None and _away(answer, targets[k], self.weights[k]) < old:
+            old = _away(answers[k], targets[k], counts[k])
+            if answer.grid is not None and _away(answer, targets[k], counts[k]) < old:
                 after[k], changed = answer, True
         return after, changed
 
     def _job(
-        self, kind: int, targets: Array, corrections: int, before: ModuleAnswer | None = None
+        self,
+        kind: int,
+        targets: Array,
+        counts: Array,
+        corrections: int,
+        before: ModuleAnswer | None = None,
     ) -> ModuleJob:
         settings = self.settings
         return ModuleJob(
             targets=np.round(targets, 6).tolist(),
             normals=np.round(self.normals[kind], 9).tolist(),
             cells=self.tiling.cells,
-            weights=self.weights[kind].tolist(),
+            weights=np.round(counts, 6).tolist(),
             material=self.material.model_dump(mode="json"),
             engine=settings.engine,
             model=settings.model,

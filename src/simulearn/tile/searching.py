@@ -39,7 +39,7 @@ VERSION = 1  # raise it when a search answers differently, so that older answers
 GOOD = 0.05  # mm by the engine, where a search ends
 CORRECTED = 0.15  # mm by finite elements, above which the search may go on from a check
 WORTH = 0.3  # of the error, that the engine must be off by for that
-TRIES = 3  # starts where an answer is not near
+TRIES = 3  # starts where an answer is not near, or not near enough to its neighbours
 NEAR = 0.25  # mm
 SECONDS = 120.0  # of one search, at most
 MIDDLE = 0.05  # weight of the middle of a beam; a joint's is 1 or more
@@ -152,10 +152,13 @@ class _Search:
         job = self.job
         shift = np.zeros((len(self.goals), 3)) if job.shift is None else np.array(job.shift)
         if job.grid is None:
-            space, now = self._begun(shift)
-        else:
-            space = self._space(self._grid(job.grid))
-            now = self._nearer(space, *space.start, shift)
+            space = self._space(self._flat())
+            now = self._best_of(space, space.start[0], self.start.ratios, shift, NEAR)
+        else:  # it did not come near enough: from elsewhere, too
+            space = self._space(
+                grid_from_dict(job.grid, materials={self.material.name: self.material})
+            )
+            now = self._best_of(space, *space.start, shift, 0.0)
         best = None
         for k in range(job.corrections + 1):
             answer = self._checked(space.grid_at(now.x, now.a), now.points, shift)
@@ -170,36 +173,38 @@ class _Search:
         assert best is not None
         return replace(best, designs=self.designs, checks=self.checks)
 
-    def _begun(self, shift: Array) -> tuple[Space, Scored]:
-        """Return the best design of a few starts, and its space."""
-        plain, job = self.lattice, self.job
-        flat = Grid(
-            self.start.joints,
-            plain.beams,
-            np.zeros(len(plain.beams)),
-            plain.fixed,
-            self.material,
-        )
-        space = self._space(flat)
-        source = np.random.default_rng(0)
+    def _best_of(self, space: Space, x: Array, a: Array, shift: Array, near: float) -> Scored:
+        """Return the best design of searches from a point and from others around it.
+
+        Args:
+            space: of the designs.
+            x: the point's joints.
+            a: its ratios.
+            shift: (K + B, 3) mm, from finite elements to the engine.
+            near: mm, an error below which no other search is begun.
+
+        Raises:
+            ComputationError: the engine has no answer.
+        """
+        source = np.random.default_rng(int(self.job.key[:8], 16))
         best: Scored | None = None
         for k in range(TRIES):
-            begin = self.start.ratios
-            if k:
-                begin = begin + SPREAD * source.standard_normal(len(begin))
-            now = self._nearer(space, space.start[0], np.clip(begin, -1, 1), shift)
+            begin = a + (SPREAD * source.standard_normal(len(a)) if k else 0.0)
+            now = self._nearer(space, x, np.clip(begin, -1, 1), shift)
             if best is None or now.error < best.error:
                 best = now
-            if best.error < NEAR or monotonic() > self.until:
+            if best.error < near or monotonic() > self.until:
                 break
         assert best is not None
         if not np.isfinite(best.error):
-            text = f"the engine {job.engine} has no answer near the patch's own shape"
+            text = f"the engine {self.job.engine} has no answer near the patch's own shape"
             raise ComputationError(text, "no-answer", "grid")
-        return space, best
+        return best
 
-    def _grid(self, data: dict[str, Any]) -> Grid:
-        return grid_from_dict(data, materials={self.material.name: self.material})
+    def _flat(self) -> Grid:
+        plain = self.lattice
+        passive = np.zeros(len(plain.beams))
+        return Grid(self.start.joints, plain.beams, passive, plain.fixed, self.material)
 
     def _space(self, grid: Grid) -> Space:
         return Space.of(grid, Free(ratio=self.job.ratio), self.engine.training)
