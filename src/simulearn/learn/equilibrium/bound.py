@@ -1,10 +1,11 @@
 """How far off an answer may be: an estimate in mm that nine designs of ten stay below.
 
-It goes by what the model knows of its own answer: how much the network had to correct, how much
-the beams are strained, how far the grid sags, its size, its material, and how unlike those of the
-training its beams and joints are. The logarithm of the error's quantile is a linear function of
-these signs, fitted to trials that the model did not learn from, and moved so that the required part
-of other such trials, of which kind they may be, stays below.
+It goes by what the model knows of its own answer: how much the network had to correct, how much the
+beams are strained, how far the grid sags, its size, its material, how many of its beams end freely
+or close a loop, and how unlike those of the training its beams and joints are. The logarithm of the
+error's quantile is a linear function of these signs, fitted to trials that the model did not learn
+from, and moved so that the required part of other such trials, of which kind they may be, stays
+below.
 
 R. Koenker, G. Bassett, Regression quantiles, Econometrica 46, 1978; Y. Romano, E. Patterson,
 E. Candes, Conformalized quantile regression, NeurIPS 2019.
@@ -21,7 +22,7 @@ from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium.learnt import Learnt
 from simulearn.learn.equilibrium.parameters import Prediction
-from simulearn.mechanics.properties import properties_of, signs_of, stacked
+from simulearn.mechanics.properties import DEVIATIONS, properties_of, signs_of, stacked
 
 if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
@@ -68,6 +69,11 @@ class ErrorBound:
         for field in fields(cls):
             if field.name not in arrays:
                 raise InputError(f"weight trust.{field.name} is missing")
+        if len(arrays["weights"]) != SIGNS:
+            raise InputError(
+                f"trust.weights are {len(arrays['weights'])} numbers and not {SIGNS}: the error "
+                "estimate is of another version; train the model again"
+            )
         return cls(*(np.asarray(arrays[field.name], np.float64) for field in fields(cls)))
 
     def bound(self, designs: Designs, prediction: Prediction, learnt: Learnt) -> Numbers:
@@ -98,14 +104,18 @@ def signs_of_error(
     materials = designs.materials or (designs.material,)
     p = stacked([properties_of(m) for m in materials])
     of_material = np.delete(np.abs(signs_of(p, np)), MESH, axis=0)
+    beams, joints = len(designs.beams), designs.flat.shape[1]
+    free = float((np.bincount(designs.beams.ravel(), minlength=joints) == 1).sum() / beams)
+    loops = (beams - joints + 1) / beams
     rows = [
         np.ones_like(size), apart, apart**2, _log(prediction.strain), _log(prediction.sag), size,
-        count, unlike, most, np.abs(p.strain - 1), *of_material,
+        count, free, loops, unlike, most, np.abs(p.strain - 1), *of_material,
     ]  # fmt: skip
     return np.stack([np.broadcast_to(row, size.shape) for row in rows], axis=1)
 
 
 MESH = 5  # which of a material's signs is the mesh
+SIGNS = 12 + DEVIATIONS + 1  # those of the design, and of the material without the mesh
 
 
 def _log(x: Any) -> Numbers:

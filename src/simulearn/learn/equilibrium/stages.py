@@ -7,6 +7,7 @@ Everything random is drawn from the seed, the stage and the number of the update
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import optax  # type: ignore[import-untyped]
+import optax.contrib  # type: ignore[import-untyped]
 
 from simulearn.compiled import double_precision
 from simulearn.errors import ComputationError, InputError
@@ -33,6 +35,8 @@ from simulearn.mechanics.rollout import RELEASED, half_beams_at, loads
 
 # How far each coefficient may be expected to go from that of a layered beam.
 STEP = SectionLaw(0.01, 0.01, 0.04, 0.04, 0.02, 0.01, 0.01, 0.01, 0.3, 0.3, 0.2, 0.5)
+# Muon (Jordan et al., 2024) makes the update of a matrix orthogonal and leaves biases to Adam.
+OPTIMISERS = {"adam": optax.adam, "muon": partial(optax.contrib.muon, adam_b2=0.99)}
 ROUND = 250  # updates between two checkpoints
 LATE = 0.3  # of the examples are of the last two frames
 
@@ -209,15 +213,15 @@ def descend(
     seed: int,
     keep: Keeper,
 ) -> Any:
-    """Return what is left of `value` at its least, by Adam over random trials and frames."""
+    """Return what is left of `value` at its least, over random trials and frames."""
     warm = min(100, stage.updates // 10)
     schedule = optax.warmup_cosine_decay_schedule(0.0, stage.rate, warm, stage.updates)
-    optimiser = optax.chain(optax.clip_by_global_norm(1.0), optax.adam(schedule))
+    optimiser = optax.chain(optax.clip_by_global_norm(1.0), OPTIMISERS[stage.optimiser](schedule))
 
     @jax.jit
     def update(run: StageState, *args: Any) -> tuple[StageState, Array]:
         value_now, slope = jax.value_and_grad(value)(run.fitted, *args)
-        moves, state = optimiser.update(slope, run.optimiser)
+        moves, state = optimiser.update(slope, run.optimiser, run.fitted)
         return StageState(optax.apply_updates(run.fitted, moves), state), value_now
 
     run, done = keep.load(StageState(begin, optimiser.init(begin)))

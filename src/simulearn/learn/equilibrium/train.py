@@ -73,14 +73,15 @@ def train(
         ComputationError: a loss is not finite.
     """
     batches, aside = split(config, data)
-    sets, fine = [data], list[Batch]()
+    more = [read_dataset(path) for path in config.more]
+    batches += [batch for one in more for batch in _for_learning(one)]
+    sets, fine = [data, *more], list[Batch]()
     if config.fine is not None:
         sets.append(read_dataset(config.fine))
-        fine = [b.take(~b.test) for b in sets[-1].batches if (~b.test).any()]
+        fine = _for_learning(sets[-1])
     calibration: list[Batch] | None = None
     if config.calibration is not None:  # what is wrong with it is said before all the work
-        read = read_dataset(config.calibration, stress=False).batches
-        calibration = [b.take(~b.test) for b in read if (~b.test).any()]
+        calibration = _for_learning(read_dataset(config.calibration, stress=False))
     material = batches[0].material
     identity = fingerprint(config, *sets)
     stages = (config.law, config.network, config.polish, config.stress)
@@ -137,6 +138,11 @@ def train(
     if calibration is not None:
         model = replace(model, bound=calibrated(model, calibration, aside, batches))
     return model, every
+
+
+def _for_learning(data: Dataset) -> list[Batch]:
+    """Return the trials of a set that are not kept for testing, by topology."""
+    return [batch.take(~batch.test) for batch in data.batches if (~batch.test).any()]
 
 
 ENOUGH = 100  # trials that fit the weights of the error estimate
