@@ -113,11 +113,29 @@ def test_an_estimate_that_nine_of_ten_stay_below(sample):
     sign = np.stack([np.ones(2000), rng.normal(size=2000)], axis=1)
     error = np.exp(0.5 * sign[:, 1] + 0.3 * rng.normal(size=2000))
     seen = (np.zeros(2), np.eye(2))
-    others = (sign[500:1000], error[500:1000])
-    trust = error_bound_of(sign[:500], error[:500], others, seen, sample.batches)
+    kinds = np.arange(1000) % 5
+    counted = np.arange(1000) >= 500
+    trust = error_bound_of(sign[:1000], error[:1000], kinds, counted, seen, sample.batches)
     below = error[1000:] <= np.exp(sign[1000:] @ trust.weights)
     assert below.mean() == pytest.approx(0.9, abs=0.03)
     assert trust.weights[1] == pytest.approx(0.5, abs=0.05)
+
+
+def test_an_estimate_holds_for_a_kind_it_has_not_seen(sample):
+    rng = np.random.default_rng(0)
+    kinds = np.repeat(np.arange(11), 200)
+    own = 0.5 * rng.normal(size=11)[kinds]  # by which a kind is worse than its signs say
+    sign = np.stack([np.ones(2200), rng.normal(size=2200)], axis=1)
+    error = np.exp(0.5 * sign[:, 1] + own + 0.1 * rng.normal(size=2200))
+    seen = (np.zeros(2), np.eye(2))
+    covered = []
+    for new in range(11):
+        old = kinds != new
+        trust = error_bound_of(
+            sign[old], error[old], kinds[old], np.ones(old.sum(), bool), seen, sample.batches
+        )
+        covered.append((error[~old] <= np.exp(sign[~old] @ trust.weights)).mean())
+    assert np.mean(covered) >= 0.85
 
 
 def test_outside_the_ranges_the_bound_grows(fitted):

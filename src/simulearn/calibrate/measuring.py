@@ -4,6 +4,7 @@ The tips are the middles of the edges of the two outer end faces, on the top or 
 line between is known at its tips and at start, middle and end of each beam, and smooth between.
 """
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from simulearn.calibrate.form import StripRecord
+from simulearn.grid import Grid
 from simulearn.material import Material
 from simulearn.simulate.members import Prints, last_frames
 
@@ -26,6 +28,7 @@ def simulated(
     materials: list[Material],
     rises: bool,
     stretch: float = 1.0,
+    simulate: Callable[[Grid, list[Material]], Prints] = last_frames,
 ) -> Numbers:
     """Return chord and rise (T, 2), mm, of a strip in each of T materials of one section.
 
@@ -34,11 +37,12 @@ def simulated(
         materials: of the prints.
         rises: whether it is hollow on top, where it is then measured, or else on the bottom.
         stretch: factor on the lengths of its beams.
+        simulate: gives the last frames of a grid in materials.
     """
     grid = record.grid(stretch=stretch)
     x = grid.joints[:, 0]
     half = materials[0].section.width / 2
-    return read_off(last_frames(grid, materials), x, half, rises)
+    return read_off(simulate(grid, materials), x, half, rises)
 
 
 def read_off(prints: Prints, x: Numbers, half: float, rises: bool) -> Numbers:

@@ -36,6 +36,7 @@ Up = Literal["inside", "outside", "arrow", "left", "right", "top", "bottom"]
 UPS: tuple[str, ...] = get_args(Up)
 IN_PICTURE = {"left": (-1, 0), "right": (1, 0), "top": (0, -1), "bottom": (0, 1)}
 UNSURE = 0.35  # between the direction that is up and that of the hollow side, cosine
+OF_SHADOW = 0.5  # mm, deviation of an edge that may be that of a shadow
 THICK = 0.12  # relative difference from the section's thickness that is told
 ROUGH = 0.1  # mm, residual of what is no strip: strips have .02 to .05, shadows .15
 USED = 0.7  # of the outline that a strip has near its curve, but for its corners
@@ -182,6 +183,7 @@ def _measured(
             "the strip is hardly darker than a shadow is; see in the picture that it is the strip"
         )
         messages.append(Message("photo-grey", "photo", text))
+        result = result.less_sure(OF_SHADOW)
     return StripPhoto(photo, section, result, sign, fit, outline, reference, tuple(messages))
 
 

@@ -1,6 +1,6 @@
 """Chord and rise of a strip's hollow side: how long, how surely, and where in the photo."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from simulearn.calibrate.photo_strip import Curve
 
 Array = NDArray[np.float64]
 
-EDGE = 0.2  # pixels, deviation of an edge that all its points share
+EDGE = 0.25  # pixels, deviation of an edge that all its points share
 OF_BLUR = 0.1  # of the blur, likewise
 
 
@@ -32,6 +32,14 @@ class Measures:
     rise_deviation: float
     chord_pixels: Array
     rise_pixels: Array
+
+    def less_sure(self, deviation: float) -> "Measures":
+        """Return the same with one more standard deviation, mm, of both."""
+        return replace(
+            self,
+            chord_deviation=float(np.hypot(self.chord_deviation, deviation)),
+            rise_deviation=float(np.hypot(self.rise_deviation, deviation)),
+        )
 
 
 def gap(line: Array) -> tuple[float, float, int]:

@@ -29,7 +29,7 @@ def generate(
         str,
         typer.Argument(
             metavar="CONFIG",
-            help="A TOML file, or default, beams-removed, 2x3, 3x3 or sample.",
+            help="A TOML file, or the name of a set that comes along, such as default or family.",
         ),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="The folder of the set.")],

@@ -10,7 +10,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from simulearn.dataset import Dataset
+from simulearn.dataset import Dataset, read_dataset
 from simulearn.files import replacing
 from simulearn.learn.common.bundle import Bundle, save_bundle
 from simulearn.learn.common.model import Model
@@ -56,14 +56,18 @@ def run(
 
     model: Model
     every: Rows
+    more: list[Dataset] = []
     if isinstance(config, EquilibriumConfig):
         model, every = equilibrium.train(config, data, folder, report)
         percent = validate(model, split(config, data)[1])
+        fine = () if config.fine is None else (config.fine,)
+        more = [read_dataset(path, stress=False) for path in (*config.more, *fine)]
     else:
         model, every = paper.train(config, data, folder / "checkpoint.safetensors", report)
         percent = every[-1].validation_percent
     write_curve(every, folder, draw)
-    bundle = save_bundle(folder / "model", model, config.name, data, config.model_dump(mode="json"))
+    training = config.model_dump(mode="json")
+    bundle = save_bundle(folder / "model", model, config.name, data, training, more=more)
     return bundle, every, percent
 
 

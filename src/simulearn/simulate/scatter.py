@@ -79,8 +79,9 @@ def scattered(
     draw = draw_prints(material, len(grid.beams), drawn, seed)
     prints = answered(simulate_prints(grid, draw, source, progress, cancel), drawn)
     spread = Spread.of(
-        grid, prints, material.scatter, drawn=drawn, law=LAW, seed=seed, engine=source.engine
-    )
+        grid, prints, material.scatter, drawn=drawn, law=LAW, seed=seed, engine=source.engine,
+        beyond=beyond_learnt(draw, source),
+    )  # fmt: skip
     return replace(result, scatter=spread)
 
 
@@ -174,6 +175,17 @@ def simulate_prints(
             progress(min(first + source.chunk, len(draw)), len(draw))
     joints, sections, converged = zip(*parts, strict=True)
     return Prints(np.concatenate(joints), np.concatenate(sections), np.concatenate(converged))
+
+
+def beyond_learnt(draw: Draw, source: Source) -> int:
+    """Return how many prints have a beam that curls more or less than any the model has learnt."""
+    if source.learnt is None:
+        return 0
+    count = 0
+    for material, factors in zip(draw.materials, draw.factors, strict=True):
+        ends = (material_of_print(material, float(k)) for k in (factors.min(), factors.max()))
+        count += any(source.learnt.beyond(end) for end in ends)
+    return count
 
 
 def answered(prints: Prints, drawn: int) -> Prints:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Grid
+from simulearn.learn.equilibrium.learnt import Learnt
 from simulearn.material import Material
 from simulearn.simulate.learned import Learned
 from simulearn.simulate.members import Prints, last_frames
@@ -31,12 +32,14 @@ class Source:
         frames: the last frames of a grid in T materials with factors (T, B), as `last_frames`.
         count: how many prints are simulated unless a number is given.
         chunk: how many at once, between two looks at progress and cancel.
+        learnt: what the model has learnt of materials; None where every material has an answer.
     """
 
     engine: str
     frames: Callable[[Grid, Sequence[Material], Numbers], Prints]
     count: int
     chunk: int
+    learnt: Learnt | None = None
 
 
 def source_of(materials: Sequence[Material], engine: Simulator | None = None) -> Source:
@@ -54,7 +57,8 @@ def source_of(materials: Sequence[Material], engine: Simulator | None = None) ->
     except InputError:  # the model has not learnt them, or there is none
         return BY_FEA
     frames = partial(last_frames, model=str(learned.bundle.path))
-    return Source(learned.name, frames, count=300, chunk=100)
+    model: Any = learned.bundle.model
+    return Source(learned.name, frames, count=300, chunk=100, learnt=model.learnt)
 
 
 def frames_by_fea(grid: Grid, materials: Sequence[Material], factors: Numbers) -> Prints:

@@ -35,6 +35,8 @@ class Spread:
         seed: of the draws.
         engine: that simulated the prints.
         drawn, prints: how many were drawn, and how many of them have an answer.
+        beyond: how many were drawn with a beam that curls more or less than any the model has
+            learnt, so that its answer is a guess.
         dimension: of the grid.
         mean: (J, 3) mean place of each joint's centre.
         up, plane: (J,) standard deviation of its height, and of its place in the plane (root of the
@@ -60,6 +62,7 @@ class Spread:
     plane_90: Numbers
     overall: float
     lines: Numbers | None = field(default=None, repr=False)
+    beyond: int = 0
 
     @property
     def percent(self) -> float:
@@ -71,15 +74,18 @@ class Spread:
         """The spread in one line."""
         lost = self.drawn - self.prints
         without = f" ({lost} more have no answer)" if lost else ""
-        return (
+        line = (
             f"{self.prints} prints{without} by {self.engine} differ by {self.overall:.2f} mm "
             f"({self.percent:.2f} % of the dimension), the mean standard deviation of joints"
         )
+        if self.beyond:
+            line += f"; {self.beyond} have a beam beyond what the model has learnt"
+        return line
 
     @classmethod
     def of(
         cls, grid: Grid, prints: Prints, scatter: Scatter, *, drawn: int, law: str, seed: int,
-        engine: str,
+        engine: str, beyond: int = 0,
     ) -> Spread:  # fmt: skip
         """Return the spread of prints that all have an answer; see the attributes."""
         centres = prints.centres
@@ -102,6 +108,7 @@ class Spread:
             plane_90=np.percentile(np.linalg.norm(away[..., :2], axis=-1), 90, axis=0),
             overall=float(np.sqrt(variance.sum(axis=1))[others].mean()),
             lines=prints.sections.mean(axis=3),
+            beyond=beyond,
         )
 
 
@@ -119,6 +126,7 @@ def spread_to_dict(spread: Spread) -> dict[str, Any]:
         "engine": spread.engine,
         "drawn": spread.drawn,
         "prints": spread.prints,
+        "beyond": spread.beyond,
         "overall_mm": round(spread.overall, DIGITS),
         "overall_percent": round(spread.percent, DIGITS),
         "joints": [
@@ -148,8 +156,10 @@ def spread_from_dict(data: Any, grid: Grid) -> Spread:
     shapes = [(len(grid.joints), *shape) for shape in _COLUMNS.values()]
     if [a.shape for a in columns] != shapes or not all(np.isfinite(a).all() for a in columns):
         raise wrong("joints", f"are not numbers for each of this grid's {len(grid.joints)} joints")
+    data = {"beyond": 0, **data}  # which files of earlier versions do not hold
     kinds: dict[str, Any] = {"law": str, "engine": str, "seed": int, "drawn": int, "prints": int,
-             "print": float | int, "beam": float | int, "overall_mm": float | int}  # fmt: skip
+             "beyond": int, "print": float | int, "beam": float | int,
+             "overall_mm": float | int}  # fmt: skip
     for key, kind in kinds.items():
         if isinstance(data.get(key), bool) or not isinstance(data.get(key), kind):
             raise wrong(key, "is missing or of the wrong kind")
@@ -172,4 +182,5 @@ def spread_from_dict(data: Any, grid: Grid) -> Spread:
         up_90=up_90,
         plane_90=plane_90,
         overall=float(data["overall_mm"]),
+        beyond=data["beyond"],
     )

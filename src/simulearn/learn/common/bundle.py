@@ -13,7 +13,7 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -93,6 +93,7 @@ class Card(_Data):
         material: that its training designs were made of, with all its contents.
         ranges: of its training designs.
         data: they come from.
+        more: further sets that it has learnt from.
         training: the configuration of the run.
         metrics: figures of an evaluation, by data set.
     """
@@ -108,6 +109,7 @@ class Card(_Data):
     material: Annotated[Material, BeforeValidator(_by_name)]
     ranges: Ranges
     data: Source
+    more: list[Source] = []
     training: dict[str, Any] = {}
     metrics: dict[str, Any] = {}
 
@@ -263,6 +265,7 @@ def save_bundle(
     data: "Dataset",
     training: Mapping[str, Any] | None = None,
     metrics: Mapping[str, Any] | None = None,
+    more: "Sequence[Dataset]" = (),
 ) -> Bundle:
     """Write a model to a folder, completely or not at all; one that is there is replaced.
 
@@ -273,6 +276,7 @@ def save_bundle(
         data: it has learnt from; the training ranges are those of its trials to train on.
         training: the configuration of the run.
         metrics: figures of an evaluation.
+        more: further sets that it has learnt from.
 
     Raises:
         InputError: the folder cannot be written.
@@ -296,7 +300,8 @@ def save_bundle(
         weights=hashlib.sha256(content).hexdigest(),
         material=batches[0].material,
         ranges=Ranges(dimension=_range(dimensions), beam_length=_range(lengths)),
-        data=Source(name=data.config.name, sha256=data.sha256, trials=sum(len(b) for b in batches)),
+        data=_source(data),
+        more=[_source(one) for one in more],
         training=dict(training or {}),
         metrics=dict(metrics or {}),
     )
@@ -321,6 +326,11 @@ def save_bundle(
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
     return Bundle(path, card)
+
+
+def _source(data: "Dataset") -> Source:
+    trials = sum(int((~batch.test).sum()) for batch in data.batches)
+    return Source(name=data.config.name, sha256=data.sha256, trials=trials)
 
 
 def add_metrics(bundle: Bundle, name: str, figures: Mapping[str, Any]) -> Bundle:

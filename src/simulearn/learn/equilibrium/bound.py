@@ -1,10 +1,12 @@
 """How far off an answer may be: an estimate in mm that nine designs of ten stay below.
 
-It goes by what the model knows of its own answer: how much the network had to correct, how much
-the beams are strained, how far the grid sags, its size, its material, and how unlike those of the
-training its beams and joints are. The logarithm of the error's quantile is a linear function of
-these signs, fitted to trials that the model did not learn from, and moved so that the required part
-of other such trials, of which kind they may be, stays below.
+It goes by what the model knows of its own answer: how much the network had to correct, how much the
+beams are strained, how far the grid sags, its size, its material, how many of its beams end freely
+or close a loop, and how unlike those of the training its beams and joints are. The logarithm of the
+error's quantile is a linear function of these signs, fitted to trials that the model did not learn
+from. It is then moved so that the required part of these trials stays below what weights fitted to
+all other kinds of grids say of each: kinds differ by more than chance, and a new one shall be
+covered, too.
 
 R. Koenker, G. Bassett, Regression quantiles, Econometrica 46, 1978; Y. Romano, E. Patterson,
 E. Candes, Conformalized quantile regression, NeurIPS 2019.
@@ -21,13 +23,12 @@ from simulearn.errors import InputError
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium.learnt import Learnt
 from simulearn.learn.equilibrium.parameters import Prediction
-from simulearn.mechanics.properties import properties_of, signs_of, stacked
+from simulearn.mechanics.properties import DEVIATIONS, properties_of, signs_of, stacked
 
 if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
-MARGIN = 1.1  # on top: kinds of grids differ by more than chance, and a new one may be the worst
 OUTSIDE = 2.0  # by how much the logarithm grows per width of a training range beyond it
 RIDGE = 1e-3  # keeps weights small that the trials do not determine
 MOST = 3.0  # standard deviations of a sign beyond its mean that still count
@@ -68,6 +69,11 @@ class ErrorBound:
         for field in fields(cls):
             if field.name not in arrays:
                 raise InputError(f"weight trust.{field.name} is missing")
+        if len(arrays["weights"]) != SIGNS:
+            raise InputError(
+                f"trust.weights are {len(arrays['weights'])} numbers and not {SIGNS}: the error "
+                "estimate is of another version; train the model again"
+            )
         return cls(*(np.asarray(arrays[field.name], np.float64) for field in fields(cls)))
 
     def bound(self, designs: Designs, prediction: Prediction, learnt: Learnt) -> Numbers:
@@ -98,14 +104,18 @@ def signs_of_error(
     materials = designs.materials or (designs.material,)
     p = stacked([properties_of(m) for m in materials])
     of_material = np.delete(np.abs(signs_of(p, np)), MESH, axis=0)
+    beams, joints = len(designs.beams), designs.flat.shape[1]
+    free = float((np.bincount(designs.beams.ravel(), minlength=joints) == 1).sum() / beams)
+    loops = (beams - joints + 1) / beams
     rows = [
         np.ones_like(size), apart, apart**2, _log(prediction.strain), _log(prediction.sag), size,
-        count, unlike, most, np.abs(p.strain - 1), *of_material,
+        count, free, loops, unlike, most, np.abs(p.strain - 1), *of_material,
     ]  # fmt: skip
     return np.stack([np.broadcast_to(row, size.shape) for row in rows], axis=1)
 
 
 MESH = 5  # which of a material's signs is the mesh
+SIGNS = 12 + DEVIATIONS + 1  # those of the design, and of the material without the mesh
 
 
 def _log(x: Any) -> Numbers:
@@ -132,7 +142,8 @@ def fitted_weights(signs: Numbers, error: Numbers, part: float = PART) -> Number
 def error_bound_of(
     signs: Numbers,
     error: Numbers,
-    others: tuple[Numbers, Numbers],
+    kinds: NDArray[Any],
+    counted: NDArray[np.bool_],
     seen: tuple[Numbers, Numbers],
     learnt: "Sequence[Batch]",
 ) -> ErrorBound:
@@ -141,7 +152,8 @@ def error_bound_of(
     Args:
         signs: (T, K) of trials that the model did not learn from, the first sign 1.
         error: (T,) of the model's answers to them, mm.
-        others: signs (N, K) and errors (N,) of those that count for the coverage.
+        kinds: (T,) the kind of grid of each.
+        counted: (T,) whether a trial counts for the coverage, or only for the weights.
         seen: usual (D,) and spread (D, D) of half-beams; see `seen_of`.
         learnt: the trials it learnt from.
     """
@@ -149,11 +161,15 @@ def error_bound_of(
 
     middle, width = signs.mean(axis=0), signs.std(axis=0)
     limits = np.stack([middle - MOST * width, middle + MOST * width])
-    weights = fitted_weights(np.clip(signs, *limits), error)
+    clipped, log = np.clip(signs, *limits), np.log(np.maximum(error, 1e-6))
+    weights = fitted_weights(clipped, error)
+    left = []
+    for kind in np.unique(kinds[counted]):
+        others, mine = kinds != kind, (kinds == kind) & counted
+        left.append(log[mine] - clipped[mine] @ fitted_weights(clipped[others], error[others]))
+    above = np.concatenate(left)
     # As many below as required, counting the next trial to come.
-    left = np.log(np.maximum(others[1], 1e-6)) - np.clip(others[0], *limits) @ weights
-    weights[0] += np.quantile(left, min(1.0, PART * (len(left) + 1) / len(left)))
-    weights[0] += np.log(MARGIN)
+    weights[0] += np.quantile(above, min(1.0, PART * (len(above) + 1) / len(above)))
     thick = np.concatenate([_thickness(b) for b in learnt])
     size = np.concatenate([b.dimensions for b in learnt]) / thick
     length = np.concatenate([(beam_lengths(b) / _thickness(b)[:, None]).ravel() for b in learnt])

@@ -14,11 +14,13 @@ class Stage(Data):
         updates: of what is fitted.
         batch: pairs of trial and frame in each.
         rate: highest learning rate; it falls as a cosine.
+        optimiser: adam, or muon, which makes updates of matrices orthogonal.
     """
 
     updates: Count
     batch: Count = 32
     rate: Positive = 2e-3
+    optimiser: Literal["adam", "muon"] = "adam"
 
 
 class EquilibriumConfig(RunConfig):
@@ -29,6 +31,7 @@ class EquilibriumConfig(RunConfig):
     Attributes:
         kind: of the model; "beams" has no network.
         calibration: the data set that the error estimate is fitted to, or none.
+        more: further data sets to learn from, all by the same mesh as `data`.
         fine: a further data set to learn from, by the fine mesh, or none.
         fine_share: how many times as often its trials are drawn as others.
         width, message, rounds: of the network; see `parameters.network_shapes`.
@@ -40,6 +43,7 @@ class EquilibriumConfig(RunConfig):
 
     kind: Literal["equilibrium", "beams"]
     calibration: str | None = None
+    more: tuple[str, ...] = ()
     fine: str | None = None
     fine_share: Positive = 3.0
     width: Count = 64

@@ -7,6 +7,7 @@ Everything random is drawn from the seed, the stage and the number of the update
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +15,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import optax  # type: ignore[import-untyped]
+import optax.contrib  # type: ignore[import-untyped]
 
 from simulearn.compiled import double_precision
 from simulearn.errors import ComputationError, InputError
@@ -33,7 +35,11 @@ from simulearn.mechanics.rollout import RELEASED, half_beams_at, loads
 
 # How far each coefficient may be expected to go from that of a layered beam.
 STEP = SectionLaw(0.01, 0.01, 0.04, 0.04, 0.02, 0.01, 0.01, 0.01, 0.3, 0.3, 0.2, 0.5)
+# Muon (Jordan et al., 2024) makes the update of a matrix orthogonal and leaves biases to Adam.
+OPTIMISERS = {"adam": optax.adam, "muon": partial(optax.contrib.muon, adam_b2=0.99)}
 ROUND = 250  # updates between two checkpoints
+PASSED_OVER = 10  # updates without a slope, one after another, at most
+FINITE = 0.95  # of the losses of a round, at least
 LATE = 0.3  # of the examples are of the last two frames
 
 
@@ -44,7 +50,7 @@ class StageRow:
     Attributes:
         stage: what is fitted.
         update: updates of the stage so far.
-        loss: mean over the round.
+        loss: mean over the round, without updates that had none.
         seconds: it took.
     """
 
@@ -209,15 +215,17 @@ def descend(
     seed: int,
     keep: Keeper,
 ) -> Any:
-    """Return what is left of `value` at its least, by Adam over random trials and frames."""
+    """Return what is left of `value` at its least, over random trials and frames."""
     warm = min(100, stage.updates // 10)
     schedule = optax.warmup_cosine_decay_schedule(0.0, stage.rate, warm, stage.updates)
-    optimiser = optax.chain(optax.clip_by_global_norm(1.0), optax.adam(schedule))
+    chain = optax.chain(optax.clip_by_global_norm(1.0), OPTIMISERS[stage.optimiser](schedule))
+    # A grid that buckles under parameters that are far off has no slope; it is passed over.
+    optimiser = optax.apply_if_finite(chain, max_consecutive_errors=PASSED_OVER)
 
     @jax.jit
     def update(run: StageState, *args: Any) -> tuple[StageState, Array]:
         value_now, slope = jax.value_and_grad(value)(run.fitted, *args)
-        moves, state = optimiser.update(slope, run.optimiser)
+        moves, state = optimiser.update(slope, run.optimiser, run.fitted)
         return StageState(optax.apply_updates(run.fitted, moves), state), value_now
 
     run, done = keep.load(StageState(begin, optimiser.init(begin)))
@@ -238,11 +246,14 @@ def descend(
             run, now = update(run, *draw(some, which, frame))
             values.append(now)
             keep.report(None, k + 1, stage.updates)
-        mean = float(np.mean(np.asarray(jnp.stack(values))))
-        if not np.isfinite(mean):
+        every = np.asarray(jnp.stack(values))
+        finite = every[np.isfinite(every)]
+        if len(finite) < FINITE * len(every):
             raise ComputationError(
-                f"{keep.stage}: the loss is not finite; lower its rate ({stage.rate:g})"
+                f"{keep.stage}: the loss is not finite in {len(every) - len(finite)} of "
+                f"{len(every)} updates; lower its rate ({stage.rate:g})"
             )
+        mean = float(finite.mean())
         done, row = until, StageRow(keep.stage, until, mean, time.perf_counter() - begun)
         keep.save(run, done, row)
         keep.report(row, done, stage.updates)

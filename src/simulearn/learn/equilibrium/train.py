@@ -73,14 +73,15 @@ def train(
         ComputationError: a loss is not finite.
     """
     batches, aside = split(config, data)
-    sets, fine = [data], list[Batch]()
+    more = [read_dataset(path) for path in config.more]
+    batches += [batch for one in more for batch in _for_learning(one)]
+    sets, fine = [data, *more], list[Batch]()
     if config.fine is not None:
         sets.append(read_dataset(config.fine))
-        fine = [b.take(~b.test) for b in sets[-1].batches if (~b.test).any()]
+        fine = _for_learning(sets[-1])
     calibration: list[Batch] | None = None
     if config.calibration is not None:  # what is wrong with it is said before all the work
-        read = read_dataset(config.calibration, stress=False).batches
-        calibration = [b.take(~b.test) for b in read if (~b.test).any()]
+        calibration = _for_learning(read_dataset(config.calibration, stress=False))
     material = batches[0].material
     identity = fingerprint(config, *sets)
     stages = (config.law, config.network, config.polish, config.stress)
@@ -139,7 +140,9 @@ def train(
     return model, every
 
 
-ENOUGH = 100  # trials that fit the weights of the error estimate
+def _for_learning(data: Dataset) -> list[Batch]:
+    """Return the trials of a set that are not kept for testing, by topology."""
+    return [batch.take(~batch.test) for batch in data.batches if (~batch.test).any()]
 
 
 @double_precision
@@ -154,22 +157,24 @@ def calibrated(
     Args:
         model: without an estimate.
         calibration: trials that count for the coverage, by the mesh whose answers are wanted.
-        aside: further trials that the model did not learn from; where there are enough of them,
-            they alone fit the weights, else every other trial of the calibration does.
+        aside: further trials that the model did not learn from, for the weights of signs.
         learnt: trials that it learnt from.
     """
-    answers = [(batch, _answered(model, batch)) for batch in (*calibration, *aside)]
     seen = seen_of([model.predict(designs_of(b), last=True).seen for b in learnt])
-    rows = []
-    for batch, (prediction, error, ended) in answers:
+    rows: list[tuple[Any, ...]] = []
+    for k, batch in enumerate((*calibration, *aside)):
+        prediction, error, ended = _answered(model, batch)
         signs = signs_of_error(designs_of(batch), prediction, *seen)
-        rows.append((signs[ended], error[ended]))
-    counted, others = rows[: len(calibration)], rows[len(calibration) :]
-    last = [np.concatenate(x) for x in zip(*counted, strict=True)]
-    first = [np.concatenate(x) for x in zip(*others, strict=True)] if others else [last[0][:0]] * 2
-    if len(first[0]) < ENOUGH:  # what counts for the coverage must be no part of the fit
-        first, last = [x[::2] for x in last], [x[1::2] for x in last]
-    return error_bound_of(first[0], first[1], (last[0], last[1]), seen, learnt)
+        kinds = np.array(batch.kinds or _fifths(batch))
+        counted = np.full(len(batch), k < len(calibration))
+        rows.append(tuple(x[ended] for x in (signs, error, kinds, counted)))
+    every, error, kinds, counted = (np.concatenate(x) for x in zip(*rows, strict=True))
+    return error_bound_of(every, error, kinds, counted, seen, learnt)
+
+
+def _fifths(batch: Batch) -> list[str]:
+    """Return one of five names for each trial, which stand for kinds where none is known."""
+    return [f"{number % 5} of 5" for number in batch.numbers]
 
 
 def _answered(model: Equilibrium, batch: Batch) -> tuple[Prediction, Any, Any]:
