@@ -2,7 +2,7 @@
 
 Searches are jobs of their own, so they go to processes or to a cluster. Each answer is a file by
 the name of its job, and what comes next follows from the answers alone: a run that was stopped
-goes on by asking for the same jobs again.
+goes on from the answers that are there.
 """
 
 from collections.abc import Sequence
@@ -25,9 +25,9 @@ from simulearn.simulate import engine as engine_of
 from simulearn.simulate.calls import warm
 from simulearn.simulate.learned import Learned
 from simulearn.tile.alike import Member, alike, averaged
-from simulearn.tile.asking import Asking
 from simulearn.tile.borders import Fit, fit, pressed, weights
 from simulearn.tile.flatten import arcs
+from simulearn.tile.jobs import Jobs
 from simulearn.tile.patches import Tiling
 from simulearn.tile.searching import ModuleAnswer, ModuleJob, run
 from simulearn.tile.tiled import DEFAULT, Progress, Settings, Stage, Tiled
@@ -74,8 +74,8 @@ def tile(
     until = np.inf if settings.seconds is None else begun + settings.seconds
     team = workers or local_workers(min(cores(), len(kinds)), LONGEST, run)
     with team as ready:
-        asking = Asking(ready, None if folder is None else Path(folder), progress, cancel, until)
-        return _Rounds(tiling, settings, material, kinds, members, asking, begun).run()
+        jobs = Jobs(ready, None if folder is None else Path(folder), progress, cancel, until)
+        return _Rounds(tiling, settings, material, kinds, members, jobs, begun).run()
 
 
 class _Rounds:
@@ -88,11 +88,11 @@ class _Rounds:
         material: Material,
         kinds: Array,
         members: tuple[Member, ...],
-        asking: Asking,
+        jobs: Jobs,
         begun: float,
     ) -> None:
         self.tiling, self.settings, self.members = tiling, settings, members
-        self.material, self.asking, self.begun = material, asking, begun
+        self.material, self.jobs, self.begun = material, jobs, begun
         self.weights = weights(tiling, members, len(kinds))
         firsts = [next(k for k, m in enumerate(members) if m.kind == n) for n in range(len(kinds))]
         self.normals = tiling.normals[tiling.modules[firsts]]
@@ -103,16 +103,16 @@ class _Rounds:
         answers = self._first()
         now = self._fit(answers, self.tiling.points)
         best, kept, history = now, answers, [(now.gap_mm, now.error_mm)]
-        self.asking.report(Stage(0, 1, 1, now.gap_mm, now.error_mm))
+        self.jobs.report(Stage(0, 1, 1, now.gap_mm, now.error_mm))
         for number in range(1, self.settings.rounds + 1):
-            if now.gap_mm <= self.settings.gap_mm or monotonic() > self.asking.until:
+            if now.gap_mm <= self.settings.gap_mm or monotonic() > self.jobs.until:
                 break
             answers, changed = self._again(number, answers, now)
             if not changed:
                 break
             now = self._fit(answers, now.targets)
             history.append((now.gap_mm, now.error_mm))
-            self.asking.report(Stage(number, 1, 1, now.gap_mm, now.error_mm))
+            self.jobs.report(Stage(number, 1, 1, now.gap_mm, now.error_mm))
             if now.gap_mm < best.gap_mm:
                 best, kept = now, answers
         return self._tiled(best, kept, history)
@@ -120,7 +120,7 @@ class _Rounds:
     def _first(self) -> list[ModuleAnswer]:
         """Return the answers of the first search of every kind."""
         jobs = [self._job(k, t, self.weights[k], 1) for k, t in enumerate(self.kinds)]
-        found = self.asking.answers(0, jobs, final=True)
+        found = self.jobs.answers(0, jobs, final=True)
         for k, answer in enumerate(found):
             if answer is None or answer.grid is None:
                 name = self.tiling.names[[m.kind for m in self.members].index(k)]
@@ -147,7 +147,7 @@ class _Rounds:
         counts = pressed(self.tiling, self.members, self.weights, now.gaps / self.settings.gap_mm)
         jobs = [self._job(k, targets[k], counts[k], 0, answers[k]) for k in chosen]
         after, changed = list(answers), False
-        for k, answer in zip(chosen, self.asking.answers(number, jobs), strict=True):
+        for k, answer in zip(chosen, self.jobs.answers(number, jobs), strict=True):
             if answer is None:
                 continue
             self.searching += answer.seconds

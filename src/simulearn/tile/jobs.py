@@ -1,4 +1,4 @@
-"""Who answers searches: files of earlier runs, then processes or a cluster.
+"""Answers to the searches of a tiling: files of earlier runs, then processes or a cluster.
 
 FOLDER/work/KEY.json   the answer to a job, by its name
 """
@@ -21,8 +21,8 @@ PATIENCE = 0.5  # s between two looks at the token and the clock
 AHEAD = 2  # jobs given to each worker
 
 
-class Asking:
-    """Who answers jobs: the folder, or workers whose answers are then kept there.
+class Jobs:
+    """Answers jobs from the folder, or by workers, whose answers are then kept there.
 
     Args:
         workers: who searches.
