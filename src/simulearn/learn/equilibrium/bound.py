@@ -4,12 +4,13 @@ It goes by what the model knows of its own answer: how much the network had to c
 beams are strained, how far the grid sags, its size, its material, how many of its beams end freely
 or close a loop, and how unlike those of the training its beams and joints are. The logarithm of the
 error's quantile is a linear function of these signs, fitted to trials that the model did not learn
-from. It is then moved so that the required part of these trials stays below what weights fitted to
-all other kinds of grids say of each: kinds differ by more than chance, and a new one shall be
-covered, too.
+from. It is then moved so far that the required part of all designs is below with some confidence (a
+tolerance limit), counting how these trials differ from what weights fitted to all other kinds of
+grids say of each kind: kinds differ by more than chance, and a new one shall be covered, too.
 
 R. Koenker, G. Bassett, Regression quantiles, Econometrica 46, 1978; Y. Romano, E. Patterson,
-E. Candes, Conformalized quantile regression, NeurIPS 2019.
+E. Candes, Conformalized quantile regression, NeurIPS 2019; S. S. Wilks, Determination of sample
+sizes for setting tolerance limits, Annals of Mathematical Statistics 12, 1941.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,6 +30,7 @@ if TYPE_CHECKING:  # answering needs none of it
     from simulearn.dataset import Batch
 
 PART = 0.9  # of the designs that stay below
+SURE = 0.95  # confidence that so many do, as far as the number of trials is concerned
 OUTSIDE = 2.0  # by how much the logarithm grows per width of a training range beyond it
 RIDGE = 1e-3  # keeps weights small that the trials do not determine
 MOST = 3.0  # standard deviations of a sign beyond its mean that still count
@@ -157,6 +159,8 @@ def error_bound_of(
         seen: usual (D,) and spread (D, D) of half-beams; see `seen_of`.
         learnt: the trials it learnt from.
     """
+    from scipy.stats import binom
+
     from simulearn.dataset.statistics import beam_lengths
 
     middle, width = signs.mean(axis=0), signs.std(axis=0)
@@ -167,9 +171,9 @@ def error_bound_of(
     for kind in np.unique(kinds[counted]):
         others, mine = kinds != kind, (kinds == kind) & counted
         left.append(log[mine] - clipped[mine] @ fitted_weights(clipped[others], error[others]))
-    above = np.concatenate(left)
-    # As many below as required, counting the next trial to come.
-    weights[0] += np.quantile(above, min(1.0, PART * (len(above) + 1) / len(above)))
+    above = np.sort(np.concatenate(left))
+    # The least of them that the required part of all designs is below, as sure as is wanted.
+    weights[0] += above[min(int(binom.ppf(SURE, len(above), PART)), len(above) - 1)]
     thick = np.concatenate([_thickness(b) for b in learnt])
     size = np.concatenate([b.dimensions for b in learnt]) / thick
     length = np.concatenate([(beam_lengths(b) / _thickness(b)[:, None]).ravel() for b in learnt])
