@@ -43,6 +43,7 @@ SEED = 4100
 SPACING = 0.6  # mm between samples
 STEPS = 3  # moments from each frame to the next
 NEAREST = 6  # samples that must all say that a point is below the surface
+THICK = 4.0  # mm; twice as deep as a point can be in a part
 MISS = 0.3  # mm, deeper than which none may be missed
 MOST_BEAMS = 13  # of a design, so that finite elements take seconds
 CORNERS = ElementHexS2.doflocs[:8]
@@ -203,11 +204,16 @@ class Reference:
             for one, other in ((a, b), (b, a)):
                 x, n = now[other]
                 inside = ((now[one][0] > low) & (now[one][0] < high)).all(axis=1)
-                points = now[one][0][inside]
-                if not len(points):
+                if not inside.any():
                     continue
                 if other not in trees:
                     trees[other] = cKDTree(x)
+                # No point is deeper than half of what is thinnest.
+                away, _ = trees[other].query(now[one][0][inside], distance_upper_bound=THICK)
+                inside[inside] = np.isfinite(away)
+                points = now[one][0][inside]
+                if not len(points):
+                    continue
                 _, k = trees[other].query(points, k=NEAREST)
                 deep = -np.einsum("pkx,pkx->pk", points[:, None] - x[k], n[k]).max(axis=1)
                 for joint in both:

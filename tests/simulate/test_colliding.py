@@ -51,8 +51,8 @@ def test_an_engine_warns_of_collisions():
 def test_the_solid_is_followed_where_there_is_one():
     result = synthetic.result(bend=synthetic.cylinder)
     along = sections_of(result)
-    assert along.shape[2] == 21
-    assert np.allclose(along[:, :, [0, 10, 20]], result.beams, atol=1e-6)
+    assert along.shape[2] == 81
+    assert np.allclose(along[:, :, [0, 40, 80]], result.beams, atol=1e-6)
     without = dataclasses.replace(result, solid=None)
     assert sections_of(without) is result.beams
 

@@ -14,7 +14,7 @@ from simulearn.simulate.skin import edges
 Array = NDArray[np.float64]
 
 NAMED = 3  # pairs in a message
-ALONG = np.linspace(0, 1, 21)  # of a beam, between which places its solid is taken as straight
+ALONG = np.linspace(0, 1, 81)  # of a beam, between which places its solid is taken as straight
 
 
 def with_collisions(result: Result) -> Result:

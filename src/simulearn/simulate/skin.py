@@ -108,14 +108,16 @@ def _along_nodes(result: Result, beam: int, corner: int, t: Array) -> Array:
 
     assert result.solid is not None
     assert result.displacements is not None
-    nodes = result.solid.nodes
-    ends = nodes[result.solid.beams[beam][[0, 2], corner]]
+    solid = result.solid
+    own = np.unique(solid.bricks[solid.parts[:, 0] == beam])
+    nodes = solid.nodes[own]
+    ends = solid.nodes[solid.beams[beam][[0, 2], corner]]
     along = ends[1] - ends[0]
     place = (nodes - ends[0]) @ along / (along @ along)
     off = np.linalg.norm(nodes - ends[0] - place[:, None] * along, axis=1)
     on = np.flatnonzero((off < 1e-6) & (place > -1e-9) & (place < 1 + 1e-9))
     on = on[np.argsort(place[on])]
-    curves = nodes[on] + result.displacements[:, on]
+    curves = nodes[on] + result.displacements[:, own[on]]
     return np.asarray(CubicSpline(place[on], curves, axis=1)(t))
 
 
