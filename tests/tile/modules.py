@@ -17,7 +17,7 @@ from simulearn.tile.searching import ModuleAnswer, run
 RING = {"schema": "simulearn.chart/1", "revolution": {"profile": [[80, 0], [78, 50]]}}
 
 
-def ring(count=8, cells=(1, 1)):
+def ring(count=10, cells=(1, 1)):
     """A ring of modules of one row."""
     return from_chart(revolution(RING["revolution"]["profile"]), (count, 1), cells)
 

@@ -36,7 +36,7 @@ def test_parameters_go_along_the_surface_evenly():
     along = np.linalg.norm(np.diff(tiling.points[:5], axis=0), axis=1)
     assert along.max() / along.min() < 1.03  # chords of equal arcs
     assert (tiling.normals[:, 2] > 0).all()
-    assert counted(steep, 100.0) == (4, 1)
+    assert counted(steep, 100.0) == (5, 1)
 
 
 def test_between_two_edges_it_begins_and_ends_at_them_in_the_directions_asked_for():

@@ -42,7 +42,7 @@ WORTH = 0.3  # of the error, that the engine must be off by for that
 TRIES = 3  # starts where an answer is not near, or not near enough to its neighbours
 NEAR = 0.25  # mm
 SECONDS = 120.0  # of one search, at most
-MIDDLE = 0.05  # weight of the middle of a beam; a joint's is 1 or more
+MIDDLE = 0.02  # weight of the middle of a beam; a joint's is 1 or more
 SPREAD = 0.3  # of ratios, of starts after the first
 
 
