@@ -68,7 +68,7 @@ def draw_sets(ax: Axes, goals: Goals, box: Array, camera: Camera) -> None:
         colour = BODY if body else TARGET
         if isinstance(drawn, Curve):
             line = camera.see(drawn.points)[:, :2]
-            ax.plot(*line.T, color=colour, lw=1.3, zorder=1.6, clip_on=False)
+            ax.plot(*line.T, color=colour, lw=1.1, zorder=4, clip_on=False)
         elif len(drawn):
             _draw_net(ax, drawn, colour, camera)
 
