@@ -6,9 +6,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.surfaces.kernels.closest import closest_points, windings
-from simulearn.surfaces.kernels.tree import build, depth_of
-
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
@@ -34,6 +31,8 @@ class Tree:
     @classmethod
     def of(cls, corners: Array) -> "Tree":
         """Return the tree of triangles with corners (T, 3, 3) mm, at least one."""
+        from simulearn.surfaces.kernels.tree import build, depth_of  # loads the compiler
+
         depth = depth_of(len(corners))
         order, starts, boxes = build(np.ascontiguousarray(corners, np.float64), depth)
         return cls(corners[order], order, starts, boxes, depth)
@@ -43,6 +42,8 @@ class Tree:
 
         Of a point that is not finite they are NaN and -1.
         """
+        from simulearn.surfaces.kernels.closest import closest_points  # loads the compiler
+
         places, triangles = closest_points(
             _rows(points), self.corners, self.order, self.starts, self.boxes, self.depth
         )
@@ -50,6 +51,8 @@ class Tree:
 
     def windings(self, points: NDArray[Any]) -> Indices:
         """Return how often the triangles go around points (N, 3): (N,)."""
+        from simulearn.surfaces.kernels.closest import windings  # loads the compiler
+
         counts: Indices = windings(_rows(points), self.corners, self.starts, self.boxes, self.depth)
         return counts
 
