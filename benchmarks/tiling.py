@@ -87,8 +87,8 @@ def main() -> None:
         "elements on the fine mesh, and all figures are by them: error is the distance of joints "
         "from their targets, deviation the distance from the surface, gap the distance between "
         "two neighbours' versions of a shared joint. User seconds are of all processes together; "
-        "wall-clock seconds are of a machine whose load over five minutes is given, so that a "
-        "machine with two free cores takes about half of the user seconds."
+        "wall-clock seconds are of a machine that others used, too: its load over five minutes is "
+        "given."
     )
     report.table(
         [
