@@ -63,6 +63,7 @@ bench: $(VENV)/ready
 	$(ONE_THREAD) $(BIN)/python benchmarks/snaps.py --designs 20
 	$(ONE_THREAD) $(BIN)/python benchmarks/curve.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/inverse.py
+	$(ONE_THREAD) $(BIN)/python benchmarks/answers.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/studio.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/studio_users.py
 	$(ONE_THREAD) $(BIN)/python benchmarks/drawings.py
