@@ -123,10 +123,10 @@ def test_an_estimate_that_nine_of_ten_stay_below(sample):
 
 def test_an_estimate_holds_for_a_kind_it_has_not_seen(sample):
     rng = np.random.default_rng(0)
-    kinds = np.repeat(np.arange(11), 200)
+    kinds = np.repeat(np.arange(11), 60)
     own = 0.5 * rng.normal(size=11)[kinds]  # by which a kind is worse than its signs say
-    sign = np.stack([np.ones(2200), rng.normal(size=2200)], axis=1)
-    error = np.exp(0.5 * sign[:, 1] + own + 0.1 * rng.normal(size=2200))
+    sign = np.stack([np.ones(660), rng.normal(size=660)], axis=1)
+    error = np.exp(0.5 * sign[:, 1] + own + 0.1 * rng.normal(size=660))
     seen = (np.zeros(2), np.eye(2))
     covered = []
     for new in range(11):
