@@ -17,7 +17,13 @@ from simulearn.calibrate.checks import blanks, check_values, signs_mended, witho
 from simulearn.calibrate.form import Form
 from simulearn.calibrate.model import Model
 from simulearn.calibrate.noise import Noise
-from simulearn.calibrate.parameters import base_values, material_with, parameters, with_section
+from simulearn.calibrate.parameters import (
+    WORDS,
+    base_values,
+    material_with,
+    parameters,
+    with_section,
+)
 from simulearn.calibrate.search import Search
 from simulearn.calibrate.strips import strips_of
 from simulearn.errors import Cancel, InputError, Message
@@ -28,6 +34,8 @@ HELD = 0.9  # a number whose standard deviation the readings leave above this pa
 CLEAR = 0.5  # below, it is determined well
 COVERED = 0.9  # of an interval
 UNLIKELY = 0.01
+# Other starts of a fit that comes to no good end, in standard deviations of what is known before.
+STARTS = tuple({"strain": strain, "load": load} for strain in (-1.0, 1.0) for load in (-0.8, 1.2))
 FAR = 3.5  # standard deviations of a strip's difference that is worth a warning
 EDGE = 0.01  # of a range
 
@@ -131,26 +139,40 @@ def fit(form: Form, base: Material, cancel: Cancel | None = None) -> Fit:
     model = Model(strips, base, parameters(base), cancel)
     search = Search(model, base_values(base))
     search.solve()
+    if _misfit(search)[1] < UNLIKELY:  # perhaps the best near a start that is no good
+        for moved in STARTS:
+            search.solve_from(np.array([moved.get(name, 0.0) for name in WORDS]))
     search.hold((search.deviations() / search.prior)[:-1] >= HELD)
     search.solve()
     return _result(form, base, search, [*mended, *dropped, *messages])
 
 
-def _result(form: Form, base: Material, search: Search, messages: list[Message]) -> Fit:
-    """Return what a finished search has found."""
-    misfit = search.data(search.values, search.slopes, search.at)
+def _singular(search: Search) -> Numbers:
+    """Return the singular values of the readings' sensitivity to the numbers, in deviations."""
     rows = search.rows(search.slopes) * search.prior
-    singular = np.linalg.svd(rows, compute_uv=False)
+    return np.asarray(np.linalg.svd(rows, compute_uv=False))
+
+
+def _misfit(search: Search) -> tuple[float, float]:
+    """Return how far off strips are in their standard deviations, and how likely that is."""
+    misfit = search.data(search.values, search.slopes, search.at)
+    singular = _singular(search)
     free = len(misfit) - float((singular**2 / (1 + singular**2)).sum())
     square = float(misfit @ misfit)
-    spread = 1.0
-    if free > 0 and chi2.sf(square, free) < UNLIKELY:
-        spread = float(np.sqrt(square / free))
+    return (float(np.sqrt(square / free)), float(chi2.sf(square, free))) if free > 0 else (1.0, 1.0)
+
+
+def _result(form: Form, base: Material, search: Search, messages: list[Message]) -> Fit:
+    """Return what a finished search has found."""
+    spread, chance = _misfit(search)
+    if chance < UNLIKELY:
         text = (
             f"no material of the family gives all strips what was measured: they are {spread:.1f} "
             "times as far off as their repeats from one another; all intervals are so much wider"
         )
         messages.append(Message("calibration-misfit", "form", text))
+    else:
+        spread = 1.0
     reach = float(t.ppf((1 + COVERED) / 2, search.noise.freedom))
     sds = search.deviations()
     shares = sds / search.prior
@@ -183,7 +205,7 @@ def _result(form: Form, base: Material, search: Search, messages: list[Message])
         differences=differences,
         noise=search.noise,
         size=(float(search.at[-1]), float(low[-1]), float(high[-1])),
-        singular=tuple(singular.tolist()),
+        singular=tuple(_singular(search).tolist()),
         covariance=search.covariance()[:-1, :-1] * spread**2,
         spread=spread,
         messages=tuple(messages),
