@@ -22,7 +22,8 @@ from simulearn.native import native
 
 Array = Any
 
-CLEAR = 1.0  # mm between the far halves of two beams, so that a plane may turn between two frames
+CLEAR = 3.0  # mm between the far halves of two beams, so that a plane may turn between two frames
+STILL = 0.955  # cosine of the angle by which it may turn (.3 rad); in a snap it may turn over
 
 
 @native(entry=False)
@@ -81,7 +82,9 @@ def row_of(hull: Array, r: int, n: Any) -> Any:
 
 
 @native(entry=False)
-def beams_apart(first: Array, i: int, second: Array, j: int, joint: Array, least: float) -> bool:
+def beams_apart(
+    first: Array, i: int, second: Array, j: int, joint: Array, least: float, normal: Array
+) -> bool:
     """Return whether a plane through the joint of two beams has one on either side.
 
     Args:
@@ -91,6 +94,7 @@ def beams_apart(first: Array, i: int, second: Array, j: int, joint: Array, least
         j: its end at the joint.
         joint: (8, 3) corners of the joint.
         least: mm by which they may overlap at the joint.
+        normal: (3,) of the plane, is set.
     """
     rows = len(first)
     middle = rows // 2
@@ -101,6 +105,7 @@ def beams_apart(first: Array, i: int, second: Array, j: int, joint: Array, least
     if size < 1e-9:
         return False
     n = (between[0] / size, between[1] / size, between[2] / size)
+    normal[0], normal[1], normal[2] = n
     low = low_far = np.inf
     high = high_far = -np.inf
     for r in range(rows):
@@ -116,13 +121,17 @@ def beams_apart(first: Array, i: int, second: Array, j: int, joint: Array, least
 
 
 @native(entry=False)
-def joint_apart(beam: Array, end: int, joint: Array, least: float) -> bool:
-    """Return whether a beam's hull (R, 3, 3) lies beyond the face of its own joint (8, 3)."""
+def joint_apart(beam: Array, end: int, joint: Array, least: float, normal: Array) -> bool:
+    """Return whether a beam's hull (R, 3, 3) lies beyond the face of its own joint (8, 3).
+
+    The normal (3,) of the face is set.
+    """
     rows = len(beam)
     face = beam[0 if end == 0 else rows - 1]
     n = unit(cross(face[1], face[2]))
     if end == 1:
         n = (-n[0], -n[1], -n[2])
+    normal[0], normal[1], normal[2] = n
     low, high = np.inf, -np.inf
     for r in range(rows):
         place, reach = row_of(beam, r, n)
