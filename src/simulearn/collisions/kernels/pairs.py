@@ -149,9 +149,8 @@ def free(
     """Return whether a plane parts two joined bodies in a frame, and set its normal (3,)."""
     joint, i, j = joined
     if b < hulls.shape[1]:
-        one, other = hulls[f, a], hulls[f, b]
-        return beams_apart(one, i, other, j, joints[f, joint], least, normal)
-    return joint_apart(hulls[f, a], i, joints[f, joint], least, normal)
+        return beams_apart(hulls, f, a, i, b, j, joints[f, joint], least, normal)
+    return joint_apart(hulls, f, a, i, joints, joint, least, normal)
 
 
 @native(entry=False)
@@ -231,12 +230,12 @@ def set_close(
     apart = joint >= 0 and free(a, b, joined, hulls, joints, 0, least, normals[0])
     for f in range(max(frames - 1, 1)):
         g = min(f + 1, frames - 1)
-        close[f] = meet_between(boxes[a], boxes[b], f, g)
+        parted = False
         if joint >= 0:
             before, after = normals[f % 2], normals[(f + 1) % 2]
             was, apart = apart, free(a, b, joined, hulls, joints, g, least, after)
             parted = was and apart and dot(before, after) > STILL
-            close[f] = close[f] and not parted
+        close[f] = not parted and meet_between(boxes[a], boxes[b], f, g)
         somewhere = somewhere or close[f]
     return somewhere
 
