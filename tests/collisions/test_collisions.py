@@ -102,6 +102,19 @@ def test_beams_of_one_joint_meet_only_away_from_it():
     assert collision.place[0] < 40
 
 
+def test_neighbours_that_pass_each_other_between_two_frames():
+    """In both frames a plane parts them, but not the same one: as in a snap."""
+    joints = np.array([cube(c, 7.2) for c in ((0, 0, 0), (-80, 0, 0), (0, 300, 0))])
+    ends = np.array([[0, 1], [0, 2]])
+    still = beam((-12, 0, 0), (-70, 0, 0))
+    sides = [beam((-8, 8 * y, 0), (-45, 45 * y, 0)) for y in (1, -1)]
+    assert not found([still, sides[0]], [still, sides[0]], ends=ends, joints=joints)
+    assert not found([still, sides[1]], ends=ends, joints=joints)
+    (collision,) = found([still, sides[0]], [still, sides[1]], ends=ends, joints=joints)
+    assert collision.parts == ("beam 0", "beam 1")
+    assert 0.2 < collision.share < 0.8
+
+
 def test_a_joint_meets_a_beam_and_a_joint():
     still, aside = beam((0, 0, 0), (60, 0, 0)), beam((30, 60, 0), (30, 90, 0))
     joints = FAR.copy()

@@ -22,7 +22,8 @@ from simulearn.native import native
 
 Array = Any
 
-CLEAR = 1.0  # mm between the far halves of two beams, so that a plane may turn between two frames
+CLEAR = 3.0  # mm between the far halves of two beams, so that a plane may turn between two frames
+STILL = 0.955  # cosine of the angle by which it may turn (.3 rad); in a snap it may turn over
 
 
 @native(entry=False)
@@ -74,59 +75,98 @@ def up_of(joint: Array) -> Any:
 
 
 @native(entry=False)
-def row_of(hull: Array, r: int, n: Any) -> Any:
-    """Return where a row of a hull (R, 3, 3) lies along a direction: its centre and reach."""
-    row = hull[r]
-    return dot(n, row[0]), abs(dot(n, row[1])) + abs(dot(n, row[2]))
+def vector(hulls: Array, f: int, b: int, r: int, k: int) -> Any:
+    """Return vector k (centre, half width, half thickness) of row r of a hull in frame f."""
+    return hulls[f, b, r, k, 0], hulls[f, b, r, k, 1], hulls[f, b, r, k, 2]
 
 
 @native(entry=False)
-def beams_apart(first: Array, i: int, second: Array, j: int, joint: Array, least: float) -> bool:
-    """Return whether a plane through the joint of two beams has one on either side.
+def row_of(hulls: Array, f: int, b: int, r: int, n: Any) -> Any:
+    """Return where row r of a beam's hull lies along a direction: its centre and reach."""
+    across, up = vector(hulls, f, b, r, 1), vector(hulls, f, b, r, 2)
+    return dot(n, vector(hulls, f, b, r, 0)), abs(dot(n, across)) + abs(dot(n, up))
+
+
+@native(entry=False)
+def outward(hulls: Array, f: int, b: int, end: int) -> Any:
+    """Return the normal of a beam's end, from its joint into the beam."""
+    r = 0 if end == 0 else hulls.shape[2] - 1
+    n = unit(cross(vector(hulls, f, b, r, 1), vector(hulls, f, b, r, 2)))
+    return n if end == 0 else (-n[0], -n[1], -n[2])
+
+
+@native(entry=False)
+def beams_apart(
+    hulls: Array, f: int, a: int, i: int, b: int, j: int, joint: Array, least: float, normal: Array
+) -> bool:
+    """Return whether a plane through the joint of two beams has one on either side in a frame.
+
+    The plane halves the angle of the joint's two faces, or that of the ways to the beams' middles.
 
     Args:
-        first: (R, 3, 3) hull of a beam.
+        hulls: (F, B, R, 3, 3) of the beams.
+        f: the frame.
+        a: one beam.
         i: its end at the joint.
-        second: of the other beam.
+        b: the other beam.
         j: its end at the joint.
-        joint: (8, 3) corners of the joint.
+        joint: (8, 3) corners of the joint in the frame.
         least: mm by which they may overlap at the joint.
+        normal: (3,) of the plane, is set.
     """
-    rows = len(first)
-    middle = rows // 2
-    up = up_of(joint)
-    between = minus(first[middle, 0], second[middle, 0])
-    between = plus(between, -dot(between, up), up)
-    size = length(between)
-    if size < 1e-9:
-        return False
-    n = (between[0] / size, between[1] / size, between[2] / size)
+    n = unit(minus(outward(hulls, f, a, i), outward(hulls, f, b, j)))
+    if not is_parted(n, hulls, f, a, i, b, j, least):
+        up = up_of(joint)
+        middle = hulls.shape[2] // 2
+        between = minus(vector(hulls, f, a, middle, 0), vector(hulls, f, b, middle, 0))
+        n = unit(plus(between, -dot(between, up), up))
+        if not is_parted(n, hulls, f, a, i, b, j, least):
+            return False
+    normal[0], normal[1], normal[2] = n
+    return True
+
+
+@native(entry=False)
+def is_parted(n: Any, hulls: Array, f: int, a: int, i: int, b: int, j: int, least: float) -> bool:
+    """Return whether planes of a normal part two beams, and their far halves by more."""
+    rows = hulls.shape[2]
     low = low_far = np.inf
     high = high_far = -np.inf
     for r in range(rows):
-        place, reach = row_of(first, r if i == 0 else rows - 1 - r, n)
+        place, reach = row_of(hulls, f, a, r if i == 0 else rows - 1 - r, n)
         low = min(low, place - reach)
-        if r >= middle:
+        if r >= rows // 2:
             low_far = min(low_far, place - reach)
-        place, reach = row_of(second, r if j == 0 else rows - 1 - r, n)
+        place, reach = row_of(hulls, f, b, r if j == 0 else rows - 1 - r, n)
         high = max(high, place + reach)
-        if r >= middle:
+        if r >= rows // 2:
             high_far = max(high_far, place + reach)
     return low - high > -least and low_far - high_far > CLEAR
 
 
 @native(entry=False)
-def joint_apart(beam: Array, end: int, joint: Array, least: float) -> bool:
-    """Return whether a beam's hull (R, 3, 3) lies beyond the face of its own joint (8, 3)."""
-    rows = len(beam)
-    face = beam[0 if end == 0 else rows - 1]
-    n = unit(cross(face[1], face[2]))
-    if end == 1:
-        n = (-n[0], -n[1], -n[2])
+def joint_apart(
+    hulls: Array, f: int, a: int, end: int, joints: Array, j: int, least: float, normal: Array
+) -> bool:
+    """Return whether a beam's hull lies beyond the face of its own joint in a frame.
+
+    Args:
+        hulls: (F, B, R, 3, 3) of the beams.
+        f: the frame.
+        a: the beam.
+        end: its end at the joint.
+        joints: (F, J, 8, 3) corners of the joints.
+        j: the joint.
+        least: mm by which they may overlap.
+        normal: (3,) of the face, is set.
+    """
+    n = outward(hulls, f, a, end)
+    normal[0], normal[1], normal[2] = n
     low, high = np.inf, -np.inf
-    for r in range(rows):
-        place, reach = row_of(beam, r, n)
+    for r in range(hulls.shape[2]):
+        place, reach = row_of(hulls, f, a, r, n)
         low = min(low, place - reach)
     for c in range(8):
-        high = max(high, dot(n, joint[c]))
+        corner = joints[f, j, c, 0], joints[f, j, c, 1], joints[f, j, c, 2]
+        high = max(high, dot(n, corner))
     return low - high > -least

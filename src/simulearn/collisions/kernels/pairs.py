@@ -20,6 +20,7 @@ from simulearn.collisions.kernels.boxes import (
     swept_pairs,
 )
 from simulearn.collisions.kernels.neighbours import (
+    STILL,
     beams_apart,
     common_joint,
     joint_apart,
@@ -143,13 +144,13 @@ def set_body(
 
 @native(entry=False)
 def free(
-    a: int, b: int, joint: int, i: int, j: int, hulls: Array, joints: Array, f: int, least: float
+    a: int, b: int, joined: Any, hulls: Array, joints: Array, f: int, least: float, normal: Array
 ) -> bool:
-    """Return whether two joined bodies are certainly apart in a frame."""
-    beams = hulls.shape[1]
-    if b < beams:
-        return beams_apart(hulls[f, a], i, hulls[f, b], j, joints[f, joint], least)
-    return joint_apart(hulls[f, a], i, joints[f, joint], least)
+    """Return whether a plane parts two joined bodies in a frame, and set its normal (3,)."""
+    joint, i, j = joined
+    if b < hulls.shape[1]:
+        return beams_apart(hulls, f, a, i, b, j, joints[f, joint], least, normal)
+    return joint_apart(hulls, f, a, i, joints, joint, least, normal)
 
 
 @native(entry=False)
@@ -217,19 +218,24 @@ def set_joined(a: int, b: int, ends: Array, beams: int, near: Array, skip: Array
 @native(entry=False)
 def set_close(
     a: int, b: int, joined: Any, hulls: Array, joints: Array, boxes: Array, least: float,
-    close: Array,
+    close: Array, normals: Array,
 ) -> bool:  # fmt: skip
-    """Set between which frames (F,) and the next two bodies may meet; return whether anywhere."""
+    """Set between which frames (F,) and the next two bodies may meet; return whether anywhere.
+
+    The normals (2, 3) are room for the planes of two frames.
+    """
     frames = len(close)
-    joint, i, j = joined
+    joint = joined[0]
     somewhere = False
-    apart = joint >= 0 and free(a, b, joint, i, j, hulls, joints, 0, least)
+    apart = joint >= 0 and free(a, b, joined, hulls, joints, 0, least, normals[0])
     for f in range(max(frames - 1, 1)):
         g = min(f + 1, frames - 1)
-        close[f] = meet_between(boxes[a], boxes[b], f, g)
+        parted = False
         if joint >= 0:
-            was, apart = apart, free(a, b, joint, i, j, hulls, joints, g, least)
-            close[f] = close[f] and not (was and apart)
+            before, after = normals[f % 2], normals[(f + 1) % 2]
+            was, apart = apart, free(a, b, joined, hulls, joints, g, least, after)
+            parted = was and apart and dot(before, after) > STILL
+        close[f] = not parted and meet_between(boxes[a], boxes[b], f, g)
         somewhere = somewhere or close[f]
     return somewhere
 
@@ -290,6 +296,7 @@ def find_pairs(
     pairs = np.empty((8 * bodies, 2), np.int64)
     room = make_pieces(6, given)  # of two bodies in two frames, and between these
     row, skip, close = np.zeros(10), np.zeros(4, np.int64), np.zeros(frames, np.bool_)
+    normals = np.zeros((2, 3))
     count = 0
     for t in range(designs):
         bends = Bends(ratios[t], skews)
@@ -312,7 +319,7 @@ def find_pairs(
         for k in range(many):
             a, b = pairs[k]
             joined = set_joined(a, b, ends, beams, near, skip)
-            if not set_close(a, b, joined, hulls, joints[t], boxes, least, close):
+            if not set_close(a, b, joined, hulls, joints[t], boxes, least, close, normals):
                 continue
             follow(a, b, sections[t], joints[t], bends, close, skip, least, room, row)
             if row[6] > 0.0:
