@@ -27,7 +27,7 @@ from simulearn.collisions.kernels.neighbours import (
     set_near,
 )
 from simulearn.collisions.kernels.pieces import count_of, make_pieces, set_beam, set_joint
-from simulearn.collisions.kernels.separation import separation
+from simulearn.collisions.kernels.separation import exact, separation
 from simulearn.collisions.kernels.vectors import dot, minus
 from simulearn.native import native
 
@@ -65,6 +65,7 @@ def gap(pieces: Any, a: int, b: int, skip: Array, place: Array) -> float:
         place: (3,) mm, is set.
     """
     least = nearest = np.inf
+    room = np.empty((4, 12, 3))
     for i in range(pieces.counts[a]):
         p = pieces.spheres[a, i]
         for j in range(pieces.counts[b]):
@@ -74,6 +75,8 @@ def gap(pieces: Any, a: int, b: int, skip: Array, place: Array) -> float:
             if square >= (r + max(least, 0.0)) ** 2 or is_left_out(pieces, a, i, b, j, skip):
                 continue
             value = separation(pieces, a, i, b, j) if square < r * r else np.sqrt(square) - r
+            if value < 0.0 and value < least + ALIKE:
+                value = exact(pieces, a, i, b, j, value, room)
             as_deep = value < least + ALIKE and square < nearest
             if value < 0.0 and (value < least - ALIKE or as_deep):
                 nearest = square
