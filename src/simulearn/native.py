@@ -22,12 +22,16 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from simulearn.files import cache_folder
 
 
-def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def native(
+    entry: bool = True, allocates: bool = True, **options: Any
+) -> Callable[[Callable[..., Any]], Any]:
     """Return a decorator that compiles a function; it runs without the interpreter's lock.
 
     Args:
         entry: whether Python calls it. Entries are kept on disk; what only other kernels call is
             compiled into them.
+        allocates: whether it makes arrays. What does not need not count who holds those that it is
+            given, which in short functions costs more than their work.
         options: further options of `numba.njit`.
     """
 
@@ -35,6 +39,8 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
         # Wrappers for callers that a kernel does not have would only take time to compile.
         wrappers = {"no_cfunc_wrapper": True, "no_cpython_wrapper": not entry}
         settings: Any = {"nogil": True, "error_model": "numpy", **wrappers, **options}
+        if not allocates:
+            settings["_nrt"] = False
         compile_: Any = numba.njit(**settings)(function)
         if entry:
             with suppress(RuntimeError, OSError):  # no folder: every process compiles for itself
@@ -42,6 +48,11 @@ def native(entry: bool = True, **options: Any) -> Callable[[Callable[..., Any]],
         return compile_
 
     return decorate
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """Compile a short function that makes no arrays into each place where a kernel calls it."""
+    return native(entry=False, allocates=False, forceinline=True)(function)
 
 
 class _Place:

@@ -18,7 +18,7 @@ from simulearn.collisions.kernels.vectors import (
     section_frame,
     unit,
 )
-from simulearn.native import native
+from simulearn.native import inlined, native
 
 Array = Any
 
@@ -27,7 +27,7 @@ STEPS = 6  # of Newton's method, at most
 BENT = 3.0  # rad of a half, at most
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def reached(bend: float, share: float) -> Any:
     """Return where an axis of length 1 ends that bends over a share of it: along, across."""
     if abs(bend) < 1e-6:
@@ -37,7 +37,7 @@ def reached(bend: float, share: float) -> Any:
     return over * s + (1.0 - share) * c, over * (1.0 - c) + (1.0 - share) * s
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def bend_of(along: float, across: float, share: float) -> float:
     """Return the bend (rad) of an axis whose end lies there; by Newton's method, from flat."""
     seen = atan2(across, along)
@@ -52,7 +52,7 @@ def bend_of(along: float, across: float, share: float) -> float:
     return bend
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_skew(flat: Array, skew: Array) -> None:
     """Set half width and skew (3, 2) of a beam's sections (3, 4, 3) in the flat grid.
 
@@ -68,7 +68,7 @@ def set_skew(flat: Array, skew: Array) -> None:
         skew[s, 0] = length(plus(left, -skew[s, 1], along))
 
 
-@native(entry=False)
+@inlined
 def ahead_of(left: Any, up: Any, skew: Array) -> Any:
     """Return the direction of a beam at a section of these half sides, half width and skew."""
     normal, flank = unit(cross(left, up)), unit(left)
@@ -76,7 +76,7 @@ def ahead_of(left: Any, up: Any, skew: Array) -> Any:
     return unit(plus((a * normal[0], a * normal[1], a * normal[2]), b, flank))
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_sections(three: Array, ratio: float, skew: Array, out: Array) -> None:
     """Set the sections (PIECES + 1, 4, 3) along a beam of three sections (3, 4, 3)."""
     middle, left, up = section_frame(three[1])

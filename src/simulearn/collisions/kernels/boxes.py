@@ -6,13 +6,13 @@ thickness.
 """
 
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from simulearn.collisions.kernels.axis import ahead_of
-from simulearn.collisions.kernels.vectors import dot, minus, plus, section_frame
-from simulearn.native import native
+from simulearn.collisions.kernels.vectors import cross, dot, minus, plus, section_frame, unit
+from simulearn.native import inlined, native
 
 Array = Any
 
@@ -20,14 +20,28 @@ ROWS = 5  # of the hull of a beam of three sections
 STEEP = 0.3  # least cosine between a half's chord and the middle's direction
 
 
-@native(entry=False)
+class Hulls(NamedTuple):
+    """The hulls of beams in all frames.
+
+    Attributes:
+        rows: (F, B, R, 3, 3) from start to end.
+        faces: (F, B, 2, 3) normals of both ends, from the joint into the beam.
+        reach: (F, B) that no row reaches beyond from its centre, mm.
+    """
+
+    rows: Array
+    faces: Array
+    reach: Array
+
+
+@inlined
 def set_row(row: Array, centre: Any, left: Any, up: Any) -> None:
     """Set a row (3, 3) of a hull."""
     for i in range(3):
         row[0, i], row[1, i], row[2, i] = centre[i], left[i], up[i]
 
 
-@native(entry=False)
+@inlined
 def set_hull(sections: Array, skew: Array, hull: Array) -> None:
     """Set the rows (R, 3, 3), from start to end, between which a beam (S, 4, 3) lies."""
     if len(sections) != 3:
@@ -48,7 +62,24 @@ def set_hull(sections: Array, skew: Array, hull: Array) -> None:
         set_row(hull[1 + 2 * side], plus(middle, far, ahead), left, up)
 
 
-@native(entry=False)
+@inlined
+def set_ends(rows: Array, faces: Array) -> float:
+    """Set the normals (2, 3) of the ends of a hull (R, 3, 3), and return its reach."""
+    many = len(rows)
+    most = 0.0
+    for r in range(many):
+        square = 0.0
+        for i in range(3):
+            square += (abs(rows[r, 1, i]) + abs(rows[r, 2, i])) ** 2
+        most = max(most, square)
+    for end in range(2):
+        n = unit(cross(rows[end * (many - 1), 1], rows[end * (many - 1), 2]))
+        for i in range(3):
+            faces[end, i] = n[i] if end == 0 else -n[i]
+    return sqrt(most)
+
+
+@inlined
 def set_hull_box(hull: Array, box: Array) -> None:
     """Set low and high (6,) of a hull (R, 3, 3)."""
     for i in range(3):
@@ -59,7 +90,7 @@ def set_hull_box(hull: Array, box: Array) -> None:
         box[i], box[3 + i] = low, high
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_joint_box(corners: Array, box: Array) -> None:
     """Set low and high (6,) of a joint's corners (8, 3)."""
     for i in range(3):
@@ -69,7 +100,7 @@ def set_joint_box(corners: Array, box: Array) -> None:
         box[i], box[3 + i] = low, high
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_union(boxes: Array, union: Array) -> None:
     """Set the box (6,) around boxes (F, 6)."""
     for i in range(3):
@@ -80,7 +111,7 @@ def set_union(boxes: Array, union: Array) -> None:
             union[3 + i] = max(union[3 + i], boxes[f, 3 + i])
 
 
-@native(entry=False)
+@inlined
 def meet(a: Array, b: Array) -> bool:
     """Return whether two boxes (6,) overlap."""
     return (
@@ -90,7 +121,7 @@ def meet(a: Array, b: Array) -> bool:
     )  # fmt: skip
 
 
-@native(entry=False)
+@inlined
 def meet_between(a: Array, b: Array, f: int, g: int) -> bool:
     """Return whether the boxes around two bodies' boxes (F, 6) in frames f and g overlap."""
     for i in range(3):
@@ -101,7 +132,7 @@ def meet_between(a: Array, b: Array, f: int, g: int) -> bool:
     return True
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def sort(boxes: Array, order: Array) -> None:
     """Sort bodies (n,) by where their boxes (n, 6) begin in x, by Shell's method."""
     step = len(order) // 2

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from simulearn.collisions.kernels.vectors import (
-    cross,
     dot,
     length,
     minus,
@@ -18,7 +17,7 @@ from simulearn.collisions.kernels.vectors import (
     section_frame,
     unit,
 )
-from simulearn.native import native
+from simulearn.native import inlined, native
 
 Array = Any
 
@@ -26,7 +25,7 @@ CLEAR = 3.0  # mm between the far halves of two beams, so that a plane may turn 
 STILL = 0.955  # cosine of the angle by which it may turn (.3 rad); in a snap it may turn over
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def common_joint(ends: Array, a: int, b: int) -> Any:
     """Return the joint that two beams share, -1 if none, and which ends of them it is at."""
     for i in range(2):
@@ -36,7 +35,7 @@ def common_joint(ends: Array, a: int, b: int) -> Any:
     return -1, 0, 0
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_near(sections: Array, count: int, near: Array) -> None:
     """Set how many of a beam's pieces (2,) begin within its width of its start and its end.
 
@@ -65,7 +64,7 @@ def set_near(sections: Array, count: int, near: Array) -> None:
         near[side] = k
 
 
-@native(entry=False)
+@inlined
 def up_of(joint: Array) -> Any:
     """Return the direction of a joint (8, 3) from bottom to top."""
     total = (0.0, 0.0, 0.0)
@@ -74,37 +73,54 @@ def up_of(joint: Array) -> Any:
     return unit(total)
 
 
-@native(entry=False)
-def vector(hulls: Array, f: int, b: int, r: int, k: int) -> Any:
+@inlined
+def vector(rows: Array, f: int, b: int, r: int, k: int) -> Any:
     """Return vector k (centre, half width, half thickness) of row r of a hull in frame f."""
-    return hulls[f, b, r, k, 0], hulls[f, b, r, k, 1], hulls[f, b, r, k, 2]
+    return rows[f, b, r, k, 0], rows[f, b, r, k, 1], rows[f, b, r, k, 2]
 
 
-@native(entry=False)
-def row_of(hulls: Array, f: int, b: int, r: int, n: Any) -> Any:
-    """Return where row r of a beam's hull lies along a direction: its centre and reach."""
-    across, up = vector(hulls, f, b, r, 1), vector(hulls, f, b, r, 2)
-    return dot(n, vector(hulls, f, b, r, 0)), abs(dot(n, across)) + abs(dot(n, up))
+@inlined
+def face_of(faces: Array, f: int, b: int, end: int) -> Any:
+    """Return the normal of a beam's end in frame f, from its joint into the beam."""
+    return faces[f, b, end, 0], faces[f, b, end, 1], faces[f, b, end, 2]
 
 
-@native(entry=False)
-def outward(hulls: Array, f: int, b: int, end: int) -> Any:
-    """Return the normal of a beam's end, from its joint into the beam."""
-    r = 0 if end == 0 else hulls.shape[2] - 1
-    n = unit(cross(vector(hulls, f, b, r, 1), vector(hulls, f, b, r, 2)))
-    return n if end == 0 else (-n[0], -n[1], -n[2])
+@inlined
+def least_along(rows: Array, f: int, b: int, end: int, n: Any, reach: float) -> Any:
+    """Return where a beam begins along a direction, and where its far half does; mm.
+
+    Args:
+        rows: (F, B, R, 3, 3) of hulls.
+        f: the frame.
+        b: the beam.
+        end: the one that is near.
+        n: the direction.
+        reach: of all rows, if it will do that the beam begins there or beyond; else 0.
+    """
+    many = rows.shape[2]
+    low = far = np.inf
+    for k in range(many):
+        r = k if end == 0 else many - 1 - k
+        place = dot(n, vector(rows, f, b, r, 0)) - reach
+        if k == 0 or reach == 0.0:
+            place += reach - abs(dot(n, vector(rows, f, b, r, 1)))
+            place -= abs(dot(n, vector(rows, f, b, r, 2)))
+        low = min(low, place)
+        if k >= many // 2:
+            far = min(far, place)
+    return low, far
 
 
-@native(entry=False)
+@inlined
 def beams_apart(
-    hulls: Array, f: int, a: int, i: int, b: int, j: int, joint: Array, least: float, normal: Array
+    hulls: Any, f: int, a: int, i: int, b: int, j: int, joint: Array, least: float, normal: Array
 ) -> bool:
     """Return whether a plane through the joint of two beams has one on either side in a frame.
 
     The plane halves the angle of the joint's two faces, or that of the ways to the beams' middles.
 
     Args:
-        hulls: (F, B, R, 3, 3) of the beams.
+        hulls: of the beams.
         f: the frame.
         a: one beam.
         i: its end at the joint.
@@ -114,11 +130,10 @@ def beams_apart(
         least: mm by which they may overlap at the joint.
         normal: (3,) of the plane, is set.
     """
-    n = unit(minus(outward(hulls, f, a, i), outward(hulls, f, b, j)))
+    n = unit(minus(face_of(hulls.faces, f, a, i), face_of(hulls.faces, f, b, j)))
     if not is_parted(n, hulls, f, a, i, b, j, least):
-        up = up_of(joint)
-        middle = hulls.shape[2] // 2
-        between = minus(vector(hulls, f, a, middle, 0), vector(hulls, f, b, middle, 0))
+        rows, middle, up = hulls.rows, hulls.rows.shape[2] // 2, up_of(joint)
+        between = minus(vector(rows, f, a, middle, 0), vector(rows, f, b, middle, 0))
         n = unit(plus(between, -dot(between, up), up))
         if not is_parted(n, hulls, f, a, i, b, j, least):
             return False
@@ -126,47 +141,40 @@ def beams_apart(
     return True
 
 
-@native(entry=False)
-def is_parted(n: Any, hulls: Array, f: int, a: int, i: int, b: int, j: int, least: float) -> bool:
+@inlined
+def is_parted(n: Any, hulls: Any, f: int, a: int, i: int, b: int, j: int, least: float) -> bool:
     """Return whether planes of a normal part two beams, and their far halves by more."""
-    rows = hulls.shape[2]
-    low = low_far = np.inf
-    high = high_far = -np.inf
-    for r in range(rows):
-        place, reach = row_of(hulls, f, a, r if i == 0 else rows - 1 - r, n)
-        low = min(low, place - reach)
-        if r >= rows // 2:
-            low_far = min(low_far, place - reach)
-        place, reach = row_of(hulls, f, b, r if j == 0 else rows - 1 - r, n)
-        high = max(high, place + reach)
-        if r >= rows // 2:
-            high_far = max(high_far, place + reach)
-    return low - high > -least and low_far - high_far > CLEAR
+    back = (-n[0], -n[1], -n[2])
+    for rough in range(1, -1, -1):
+        low, low_far = least_along(hulls.rows, f, a, i, n, rough * hulls.reach[f, a])
+        high, high_far = least_along(hulls.rows, f, b, j, back, rough * hulls.reach[f, b])
+        if low + high > -least and low_far + high_far > CLEAR:
+            return True
+    return False
 
 
-@native(entry=False)
+@inlined
 def joint_apart(
-    hulls: Array, f: int, a: int, end: int, joints: Array, j: int, least: float, normal: Array
+    hulls: Any, f: int, a: int, end: int, joint: Array, least: float, normal: Array
 ) -> bool:
     """Return whether a beam's hull lies beyond the face of its own joint in a frame.
 
     Args:
-        hulls: (F, B, R, 3, 3) of the beams.
+        hulls: of the beams.
         f: the frame.
         a: the beam.
         end: its end at the joint.
-        joints: (F, J, 8, 3) corners of the joints.
-        j: the joint.
+        joint: (8, 3) corners of the joint in the frame.
         least: mm by which they may overlap.
         normal: (3,) of the face, is set.
     """
-    n = outward(hulls, f, a, end)
+    n = face_of(hulls.faces, f, a, end)
     normal[0], normal[1], normal[2] = n
-    low, high = np.inf, -np.inf
-    for r in range(hulls.shape[2]):
-        place, reach = row_of(hulls, f, a, r, n)
-        low = min(low, place - reach)
+    high = -np.inf
     for c in range(8):
-        corner = joints[f, j, c, 0], joints[f, j, c, 1], joints[f, j, c, 2]
-        high = max(high, dot(n, corner))
-    return low - high > -least
+        high = max(high, n[0] * joint[c, 0] + n[1] * joint[c, 1] + n[2] * joint[c, 2])
+    for rough in range(1, -1, -1):
+        low, _ = least_along(hulls.rows, f, a, end, n, rough * hulls.reach[f, a])
+        if low - high > -least:
+            return True
+    return False

@@ -12,7 +12,9 @@ import numpy as np
 from simulearn.collisions.kernels.axis import set_skew
 from simulearn.collisions.kernels.boxes import (
     ROWS,
+    Hulls,
     meet_between,
+    set_ends,
     set_hull,
     set_hull_box,
     set_joint_box,
@@ -29,7 +31,7 @@ from simulearn.collisions.kernels.neighbours import (
 from simulearn.collisions.kernels.pieces import count_of, make_pieces, set_beam, set_joint
 from simulearn.collisions.kernels.separation import exact, separation
 from simulearn.collisions.kernels.vectors import dot, minus
-from simulearn.native import native
+from simulearn.native import inlined, native
 
 Array = Any
 
@@ -45,7 +47,7 @@ class Bends(NamedTuple):
     skews: Array
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def is_left_out(pieces: Any, a: int, i: int, b: int, j: int, skip: Array) -> bool:
     """Return whether two pieces are both near the joint that their bodies have in common."""
     return (i < skip[0] or pieces.counts[a] - 1 - i < skip[1]) and (
@@ -53,7 +55,7 @@ def is_left_out(pieces: Any, a: int, i: int, b: int, j: int, skip: Array) -> boo
     )
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def gap(pieces: Any, a: int, b: int, skip: Array, place: Array) -> float:
     """Return how far two bodies are apart, at least; negative: the depth, and set its place.
 
@@ -65,7 +67,6 @@ def gap(pieces: Any, a: int, b: int, skip: Array, place: Array) -> float:
         place: (3,) mm, is set.
     """
     least = nearest = np.inf
-    room = np.empty((4, 12, 3))
     for i in range(pieces.counts[a]):
         p = pieces.spheres[a, i]
         for j in range(pieces.counts[b]):
@@ -76,7 +77,7 @@ def gap(pieces: Any, a: int, b: int, skip: Array, place: Array) -> float:
                 continue
             value = separation(pieces, a, i, b, j) if square < r * r else np.sqrt(square) - r
             if value < 0.0 and value < least + ALIKE:
-                value = exact(pieces, a, i, b, j, value, room)
+                value = exact(pieces, a, i, b, j, value)
             as_deep = value < least + ALIKE and square < nearest
             if value < 0.0 and (value < least - ALIKE or as_deep):
                 nearest = square
@@ -86,7 +87,7 @@ def gap(pieces: Any, a: int, b: int, skip: Array, place: Array) -> float:
     return least
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def turned(before: Array, after: Array, from_: Array, to: Array) -> float:
     """Return how far corners (8, 3) move, at most, besides their centre; mm."""
     most = 0.0
@@ -98,7 +99,7 @@ def turned(before: Array, after: Array, from_: Array, to: Array) -> float:
     return np.sqrt(most)
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def nearing(pieces: Any, a: int, b: int, a1: int, b1: int, skip: Array) -> float:
     """Return how far those pieces move against each other that may meet between two frames.
 
@@ -130,7 +131,7 @@ def nearing(pieces: Any, a: int, b: int, a1: int, b1: int, skip: Array) -> float
     return most
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_body(
     body: int, sections: Array, joints: Array, bends: Any, f: int, g: int, share: float,
     pieces: Any, slot: int,
@@ -145,18 +146,18 @@ def set_body(
         set_joint(joints[f, j], joints[g, j], share, pieces, slot)
 
 
-@native(entry=False)
+@inlined
 def free(
-    a: int, b: int, joined: Any, hulls: Array, joints: Array, f: int, least: float, normal: Array
+    a: int, b: int, joined: Any, hulls: Any, joints: Array, f: int, least: float, normal: Array
 ) -> bool:
     """Return whether a plane parts two joined bodies in a frame, and set its normal (3,)."""
     joint, i, j = joined
-    if b < hulls.shape[1]:
+    if b < hulls.rows.shape[1]:
         return beams_apart(hulls, f, a, i, b, j, joints[f, joint], least, normal)
-    return joint_apart(hulls, f, a, i, joints, joint, least, normal)
+    return joint_apart(hulls, f, a, i, joints[f, joint], least, normal)
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def keep(row: Array, frame: int, share: float, first: int, depth: float, place: Array) -> None:
     """Put a moment into a pair's row if it is the deepest so far, and the first frame."""
     if row[5] < 0.0:
@@ -196,7 +197,7 @@ def search(
         top += 2
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_joined(a: int, b: int, ends: Array, beams: int, near: Array, skip: Array) -> Any:
     """Set how many pieces of two bodies (4,) are near a joint that joins them.
 
@@ -218,9 +219,9 @@ def set_joined(a: int, b: int, ends: Array, beams: int, near: Array, skip: Array
     return -1, 0, 0
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_close(
-    a: int, b: int, joined: Any, hulls: Array, joints: Array, boxes: Array, least: float,
+    a: int, b: int, joined: Any, hulls: Any, joints: Array, boxes: Array, least: float,
     close: Array, normals: Array,
 ) -> bool:  # fmt: skip
     """Set between which frames (F,) and the next two bodies may meet; return whether anywhere.
@@ -291,7 +292,11 @@ def find_pairs(
     """
     designs, frames, beams, given = sections.shape[:4]
     bodies = beams + joints.shape[2]
-    hulls = np.empty((frames, beams, ROWS if given == 3 else given, 3, 3))
+    rows = ROWS if given == 3 else given
+    hulls = Hulls(
+        np.empty((frames, beams, rows, 3, 3)), np.empty((frames, beams, 2, 3)),
+        np.empty((frames, beams)),
+    )  # fmt: skip
     boxes = np.empty((bodies, frames, 6))
     unions = np.empty((bodies, 6))
     skews = np.zeros((beams, 3, 2))
@@ -307,8 +312,9 @@ def find_pairs(
             if given == 3:
                 set_skew(sections[t, 0, b], skews[b])
             for f in range(frames):
-                set_hull(sections[t, f, b], skews[b], hulls[f, b])
-                set_hull_box(hulls[f, b], boxes[b, f])
+                set_hull(sections[t, f, b], skews[b], hulls.rows[f, b])
+                hulls.reach[f, b] = set_ends(hulls.rows[f, b], hulls.faces[f, b])
+                set_hull_box(hulls.rows[f, b], boxes[b, f])
             set_union(boxes[b], unions[b])
             set_near(sections[t, 0, b], count_of(given), near[b])
         for j in range(beams, bodies):

@@ -28,6 +28,7 @@ class Pieces(NamedTuple):
         counts: (N,) of pieces.
         sections: (P + 1, 4, 3) of a beam, mm.
         given: (S, 4, 3) its sections between two frames, mm.
+        sides: (4, 12, 3) for normals and edges of two pieces as their corners have them.
     """
 
     corners: Array
@@ -38,6 +39,7 @@ class Pieces(NamedTuple):
     counts: Array
     sections: Array
     given: Array
+    sides: Array
 
 
 @native(entry=False)
@@ -53,16 +55,17 @@ def make_pieces(bodies: int, sections: int) -> Any:
         np.zeros(bodies, np.int64),
         np.zeros((most + 1, 4, 3)),
         np.zeros((sections, 4, 3)),
+        np.zeros((4, 12, 3)),
     )
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def count_of(sections: int) -> int:
     """Return the number of pieces of a beam."""
     return PIECES if sections == 3 else sections - 1
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_beam(
     first: Array, second: Array, share: float, ratio: float, skew: Array, pieces: Any, body: int
 ) -> None:
@@ -101,7 +104,7 @@ def set_beam(
         centre, left, up = after, left_after, up_after
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_joint(first: Array, second: Array, share: float, pieces: Any, body: int) -> None:
     """Set the one piece of a joint between two frames' corners (8, 3)."""
     x = pieces.corners[body, 0]
@@ -121,14 +124,14 @@ def set_joint(first: Array, second: Array, share: float, pieces: Any, body: int)
     set_sphere(x, pieces.spheres[body, 0])
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def side_of(corners: Array, a: int, b: int) -> Any:
     """Return the way from vertical edge a of a joint (8, 3) to b, twice."""
     below, above = minus(corners[b], corners[a]), minus(corners[b + 4], corners[a + 4])
     return plus(below, 1.0, above)
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_sphere(corners: Array, sphere: Array) -> None:
     """Set centre and radius (4,) of the sphere around the corners (8, 3) of a piece."""
     for i in range(3):

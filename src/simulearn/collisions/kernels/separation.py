@@ -22,7 +22,7 @@ ACROSS = 1e-6  # sine from which two edges are not parallel
 RING = (0, 1, 3, 2)  # corners of a section, around
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def shadows_apart(a: Array, b: Array, x: float, y: float, z: float) -> Any:
     """Return the distances by which the second of two bodies (8, 3) lies ahead and behind.
 
@@ -38,7 +38,7 @@ def shadows_apart(a: Array, b: Array, x: float, y: float, z: float) -> Any:
     return low_b - high_a, low_a - high_b
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def leads_on(pieces: Any, body: int, k: int, x: float, y: float, z: float) -> bool:
     """Return whether a direction leads from piece k of a beam into the next one."""
     if pieces.kinds[body] != 3:
@@ -48,7 +48,7 @@ def leads_on(pieces: Any, body: int, k: int, x: float, y: float, z: float) -> bo
     return (way > ALONG and k < pieces.counts[body] - 1) or (way < -ALONG and k > 0)
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def along_line(pieces: Any, a: int, i: int, b: int, j: int, x: float, y: float, z: float) -> Any:
     """Return the distance of two pieces along a line, and that by moves that count."""
     ahead, behind = shadows_apart(pieces.corners[a, i], pieces.corners[b, j], x, y, z)
@@ -62,7 +62,7 @@ def along_line(pieces: Any, a: int, i: int, b: int, j: int, x: float, y: float, 
     return max(ahead, behind), counted
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def along_lines(
     pieces: Any, a: int, i: int, b: int, j: int, first: Array, normals: int, second: Array,
     others: int, edges: Any,
@@ -99,7 +99,7 @@ def along_lines(
     return apart, depth
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def separation(pieces: Any, a: int, i: int, b: int, j: int) -> float:
     """Return how far piece i of body a and piece j of body b are apart, mm; negative: the depth.
 
@@ -113,7 +113,7 @@ def separation(pieces: Any, a: int, i: int, b: int, j: int) -> float:
     return apart if apart > 0.0 else depth
 
 
-@native(entry=False)
+@native(entry=False, allocates=False)
 def set_sides(pieces: Any, body: int, k: int, normals: Array, edges: Array) -> None:
     """Set normals (6, 3) and edges (12, 3) of a piece as its corners have them."""
     x = pieces.corners[body, k]
@@ -135,8 +135,8 @@ def set_sides(pieces: Any, body: int, k: int, normals: Array, edges: Array) -> N
             normals[4 + end, i] = cap[i]
 
 
-@native(entry=False)
-def exact(pieces: Any, a: int, i: int, b: int, j: int, value: float, room: Array) -> float:
+@native(entry=False, allocates=False)
+def exact(pieces: Any, a: int, i: int, b: int, j: int, value: float) -> float:
     """Return the separation of two pieces that overlap, by their sides as they are.
 
     A box along the axis is not what the corners of a piece span where it tapers, twists or ends in
@@ -149,8 +149,8 @@ def exact(pieces: Any, a: int, i: int, b: int, j: int, value: float, room: Array
         b: another body.
         j: its piece.
         value: the separation by boxes.
-        room: (4, 12, 3).
     """
+    room = pieces.sides
     set_sides(pieces, a, i, room[0], room[1])
     set_sides(pieces, b, j, room[2], room[3])
     edges = (room[1], 12, room[3], 12)

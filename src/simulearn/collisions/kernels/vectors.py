@@ -3,18 +3,18 @@
 from math import sqrt
 from typing import Any
 
-from simulearn.native import native
+from simulearn.native import inlined
 
 Array = Any
 
 
-@native(entry=False)
+@inlined
 def dot(a: Any, b: Any) -> float:
     """Return a . b."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@native(entry=False)
+@inlined
 def cross(a: Any, b: Any) -> Any:
     """Return a x b."""
     return (
@@ -24,25 +24,25 @@ def cross(a: Any, b: Any) -> Any:
     )
 
 
-@native(entry=False)
+@inlined
 def plus(a: Any, share: float, b: Any) -> Any:
     """Return a + share b."""
     return a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]
 
 
-@native(entry=False)
+@inlined
 def minus(a: Any, b: Any) -> Any:
     """Return a - b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-@native(entry=False)
+@inlined
 def length(a: Any) -> float:
     """Return |a|."""
     return sqrt(dot(a, a))
 
 
-@native(entry=False)
+@inlined
 def unit(a: Any) -> Any:
     """Return a / |a|; a vector without length as it is."""
     size = length(a)
@@ -50,7 +50,7 @@ def unit(a: Any) -> Any:
     return a[0] * over, a[1] * over, a[2] * over
 
 
-@native(entry=False)
+@inlined
 def section_frame(corners: Array) -> Any:
     """Return centre, half width (to the left) and half thickness (up) of a section (4, 3)."""
     a, b, c, d = corners[0], corners[1], corners[2], corners[3]
