@@ -20,7 +20,12 @@ from simulearn.simulate import (
     write_json,
     write_npz,
 )
-from simulearn.simulate.colliding import collision_place, sections_of, with_collisions
+from simulearn.simulate.colliding import (
+    collision_place,
+    collision_warnings,
+    sections_of,
+    with_collisions,
+)
 from simulearn.simulate.engines import Engine
 
 ONE = Collision(("beam 3", "joint 7"), 9, 0.25, 10, 1.25, (1.0, -2.0, 3.5))
@@ -46,6 +51,18 @@ def test_an_engine_warns_of_collisions():
     first = min(one.first for one in result.collisions)
     assert 5 < first < 11
     assert f"from frame {first} on the shape is not to be believed" in message.message
+
+
+@pytest.mark.parametrize(
+    ("bound", "said"),
+    [(None, ""), (0.2, ""), (0.8, "; 1 of 2 less deep than the shape may be off (0.8 mm)"),
+     (2.0, "; all less deep than the shape may be off (2.0 mm)")],
+)  # fmt: skip
+def test_a_warning_says_which_collisions_may_not_happen(bound, said):
+    two = ONE, dataclasses.replace(ONE, parts=("beam 1", "beam 2"), depth_mm=0.4)
+    (message,) = collision_warnings(two, bound)
+    assert message.message.endswith("may not happen") == bool(said)
+    assert said in message.message
 
 
 def test_the_solid_is_followed_where_there_is_one():

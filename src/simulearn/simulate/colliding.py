@@ -31,8 +31,15 @@ def sections_of(result: Result) -> Array:
     return np.stack([edges(result, b, ALONG) for b in range(len(result.grid.beams))], axis=1)
 
 
-def collision_warnings(collisions: Sequence[Collision]) -> tuple[Message, ...]:
-    """Return a warning that names the deepest collisions, or none where there are none."""
+def collision_warnings(
+    collisions: Sequence[Collision], bound_mm: float | None = None
+) -> tuple[Message, ...]:
+    """Return a warning that names the deepest collisions, or none where there are none.
+
+    Args:
+        collisions: of a result, the deepest first.
+        bound_mm: of the error of its shape: what is less deep may not happen.
+    """
     if not collisions:
         return ()
     named = "; ".join(collision_text(one) for one in collisions[:NAMED])
@@ -42,6 +49,13 @@ def collision_warnings(collisions: Sequence[Collision]) -> tuple[Message, ...]:
         f"parts run through each other ({named}{more}): contact is not simulated, so from frame "
         f"{first} on the shape is not to be believed"
     )
+    unsure = sum(one.depth_mm < bound_mm for one in collisions) if bound_mm is not None else 0
+    if unsure:
+        which = "all" if unsure == len(collisions) else f"{unsure} of {len(collisions)}"
+        text += (
+            f"; {which} less deep than the shape may be off ({bound_mm:.1f} mm), so that these may "
+            "not happen"
+        )
     return (Message("beams-pass", collisions[0].parts[0], text),)
 
 

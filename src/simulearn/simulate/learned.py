@@ -148,7 +148,7 @@ class Learned:
                 *_left_balance(frames, t),
                 *_after_snap(snaps),
                 *_beyond(bound, one.grid),
-                *collision_warnings(collisions),
+                *collision_warnings(collisions, bound),
             ),
             collisions=collisions,
             record={"kind": self.bundle.card.kind},

@@ -1,9 +1,11 @@
 """The axis of a beam of which three sections are known, and the sections along it.
 
-Each half of a beam is bent evenly where the actuator lies, from the middle on, and straight beyond.
-So its axis is an arc and a tangent to it, in the plane of the middle's direction and the end. Both
-are fixed by the middle section, the place of the end and the ratio of the actuator; the direction
-of the end section is not used: it warps where the joint holds it.
+Each half of a beam is bent evenly where the actuator lies, from the middle on, and straight beyond:
+an arc and a tangent to it, in the plane of the middle's direction and the end. Both are fixed by
+the middle section, the place of the end and the ratio of the actuator. What the rest of the grid
+does to the beam bends it further: more at one end than at the other, or beyond the actuator. That
+shows in the direction of the end section, which the axis is turned to by a cubic in the first case
+and by an even bend of all the half in the second.
 """
 
 from math import atan2, cos, sin, sqrt
@@ -25,6 +27,7 @@ Array = Any
 PIECES = 20  # along a beam of three sections: chords stay within .1 mm of the tightest curl
 STEPS = 6  # of Newton's method, at most
 BENT = 3.0  # rad of a half, at most
+SHORT = 0.05  # ratio of an actuator below which a beam is bent by its ends alone, all along
 
 
 @native(entry=False, allocates=False)
@@ -76,15 +79,31 @@ def ahead_of(left: Any, up: Any, skew: Array) -> Any:
     return unit(plus((a * normal[0], a * normal[1], a * normal[2]), b, flank))
 
 
+@inlined
+def turning(t: float, share: float) -> Any:
+    """Return how far the axis of a half moves aside where its end turns by one, and its slope.
+
+    Both 0 at the middle (t = 0) and the first at the end (t = 1), where the slope is 1. An actuator
+    that covers all of the half (share = 1) leaves a cubic: bending moments that change along the
+    beam. A short one leaves the difference of an even bend and that over its share.
+    """
+    cubic = share**4
+    even = (1.0 + share) * (1.0 + share * share)  # (1 - cubic) / (1 - share)
+    aside = t * t / (2.0 * share) if t < share else t - share / 2.0
+    value = cubic * (t**3 - t * t) + even * ((2.0 - share) * t * t / 2.0 - aside)
+    slope = cubic * (3.0 * t - 2.0) * t + even * ((2.0 - share) * t - min(t / share, 1.0))
+    return value, slope
+
+
 @native(entry=False, allocates=False)
 def set_sections(three: Array, ratio: float, skew: Array, out: Array) -> None:
     """Set the sections (PIECES + 1, 4, 3) along a beam of three sections (3, 4, 3)."""
     middle, left, up = section_frame(three[1])
     ahead = ahead_of(left, up, skew[1])
     left = plus(left, -skew[1, 1], ahead)
-    thick = length(up)
+    wide, thick = length(left), length(up)
     half = PIECES // 2
-    share = min(max(abs(ratio), 0.02), 1.0)
+    share = min(abs(ratio), 1.0) if abs(ratio) > SHORT else 1.0
     for side in range(2):
         sign = 2.0 * side - 1.0
         end, end_left, end_up = section_frame(three[2 * side])
@@ -98,8 +117,10 @@ def set_sections(three: Array, ratio: float, skew: Array, out: Array) -> None:
         size = sqrt((along * along + across * across) / (x * x + y * y))
         c, s = cos(bend), sin(bend)
         axis = plus((c * ahead[0], c * ahead[1], c * ahead[2]), sign * s, away)
-        end_left = plus(end_left, -skew[2 * side, 1], axis)
-        end_thick = length(end_up)
+        end_axis = ahead_of(end_left, end_up, skew[2 * side])
+        turn = plus(end_axis, -dot(end_axis, axis), axis)
+        end_left = plus(end_left, -skew[2 * side, 1], end_axis)
+        end_wide, end_thick = length(end_left), length(end_up)
         for k in range(side, half + 1):
             t = k / half
             curved = min(t, share)
@@ -107,19 +128,23 @@ def set_sections(three: Array, ratio: float, skew: Array, out: Array) -> None:
             x, y = reached(angle, 1.0)
             s, c = sin(angle), cos(angle)
             x, y = curved * x + (t - curved) * c, curved * y + (t - curved) * s
+            aside, slope = turning(t, share)
             centre = plus(plus(middle, sign * size * x, ahead), size * y, away)
+            centre = plus(centre, sign * size * aside, turn)
             # The axis's direction, from the start of the beam to its end.
             axis = plus((c * ahead[0], c * ahead[1], c * ahead[2]), sign * s, away)
+            axis = unit(plus(axis, slope, turn))
             flank = plus(left, t, minus(end_left, left))
             flank = unit(plus(flank, -dot(flank, axis), axis))
             top = cross(axis, flank)
-            wide = skew[1, 0] + t * (skew[2 * side, 0] - skew[1, 0])
             oblique = skew[1, 1] + t * (skew[2 * side, 1] - skew[1, 1])
-            side_way = plus((oblique * axis[0], oblique * axis[1], oblique * axis[2]), wide, flank)
+            to_side = wide + t * (end_wide - wide)
+            flank = (to_side * flank[0], to_side * flank[1], to_side * flank[2])
+            flank = plus(flank, oblique, axis)
             high = thick + t * (end_thick - thick)
             row = out[half + (k if side else -k)]
             for i in range(3):
-                row[0, i] = centre[i] - side_way[i] - high * top[i]
-                row[1, i] = centre[i] + side_way[i] - high * top[i]
-                row[2, i] = centre[i] - side_way[i] + high * top[i]
-                row[3, i] = centre[i] + side_way[i] + high * top[i]
+                row[0, i] = centre[i] - flank[i] - high * top[i]
+                row[1, i] = centre[i] + flank[i] - high * top[i]
+                row[2, i] = centre[i] - flank[i] + high * top[i]
+                row[3, i] = centre[i] + flank[i] + high * top[i]

@@ -1,8 +1,8 @@
 """Boxes around bodies in each frame, and the pairs of bodies whose boxes ever meet.
 
-A beam of three sections lies within these and the middle one, moved along the axis to where the
-tangents of its ends cross: these rows are its hull. A row is a centre with half width and half
-thickness.
+A beam of three sections lies within these, the middle one moved along the axis, and the ends moved
+along theirs, as a curve lies within its control polygon: these rows are its hull. A row is a centre
+with half width and half thickness.
 """
 
 from math import sqrt
@@ -16,7 +16,7 @@ from simulearn.native import inlined, native
 
 Array = Any
 
-ROWS = 5  # of the hull of a beam of three sections
+ROWS = 7  # of the hull of a beam of three sections
 STEEP = 0.3  # least cosine between a half's chord and the middle's direction
 
 
@@ -51,15 +51,18 @@ def set_hull(sections: Array, skew: Array, hull: Array) -> None:
         return
     middle, left, up = section_frame(sections[1])
     ahead = ahead_of(left, up, skew[1])
-    set_row(hull[2], middle, left, up)
+    set_row(hull[3], middle, left, up)
     for side in range(2):
         sign = 2.0 * side - 1.0
         end, end_left, end_up = section_frame(sections[2 * side])
         away = minus(end, middle)
         square = dot(away, away)
-        far = sign * square / (2 * max(sign * dot(away, ahead), STEEP * sqrt(square)))
-        set_row(hull[4 * side], end, end_left, end_up)
-        set_row(hull[1 + 2 * side], plus(middle, far, ahead), left, up)
+        chord = sqrt(square)
+        far = sign * square / (2 * max(sign * dot(away, ahead), STEEP * chord))
+        back = plus(end, -sign * chord / 2, ahead_of(end_left, end_up, skew[2 * side]))
+        set_row(hull[2 + 2 * side], plus(middle, far, ahead), left, up)
+        set_row(hull[1 + 4 * side], back, end_left, end_up)
+        set_row(hull[6 * side], end, end_left, end_up)
 
 
 @inlined
