@@ -33,7 +33,8 @@ from simulearn.grid import Grid, Rules, draw_kind, draw_valid
 from simulearn.material import load_material
 from simulearn.simulate import Result, engine, read_npz, write_npz
 from simulearn.simulate.colliding import with_collisions
-from simulearn.simulate.learned import Learned, designs_of
+from simulearn.simulate.designs import designs_of
+from simulearn.simulate.learned import Learned
 
 Array = NDArray[np.float64]
 Pair = tuple[str, str]  # names of two parts

@@ -188,7 +188,7 @@ def main() -> None:
         f"{asked.tasks} reachable tasks (gradient and cma: the first {asked.few}): targets are the "
         f"nine joint centres of random designs (seed {SEED}) by the fine mesh, the start is a "
         f"flat grid of {LENGTH:g} mm beams, the engine is the default model, the limit is "
-        f"{asked.seconds:g} s with all checks. A search that comes to .1 mm stops. Errors are "
+        f"{asked.seconds:g} s with all checks. A search that comes to .08 mm stops. Errors are "
         f"means over the nine goals, after the check by the same mesh; asked are {ASKED:g} mm."
     )
     rows = []

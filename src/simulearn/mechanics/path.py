@@ -188,6 +188,22 @@ def schedule_frames(
     return Frames(released, gravity, order, corrections, True)
 
 
+def flat_path(grid: Grid, count: int) -> Path:
+    """Return a path of so many frames in each of which the grid is flat."""
+    nodes, joints = grid.nodes, len(grid.geometry.area)
+    path = Path(
+        np.empty((count, nodes, 9)),
+        np.empty((count, nodes, 3)),
+        np.zeros((count, INFO)),
+        np.zeros((count, 2, len(grid.ratio), 6)),
+        jumped=np.zeros(count, np.bool_),
+    )
+    path.R[:, :joints] = np.eye(3).ravel()
+    path.R[:, joints:] = grid.geometry.frame[0]
+    path.p[:, :joints], path.p[:, joints:] = grid.geometry.centre, grid.geometry.middle
+    return path
+
+
 def trace(
     grid: Grid,
     frames: Frames,
@@ -205,18 +221,9 @@ def trace(
             ends there.
         tolerance: of the last motion of an iteration, mm.
     """
-    count, nodes, joints = len(frames.released), grid.nodes, len(grid.geometry.area)
-    path = Path(
-        np.empty((count, nodes, 9)),
-        np.empty((count, nodes, 3)),
-        np.zeros((count, INFO)),
-        np.zeros((count, 2, len(grid.ratio), 6)),
-        tight=small_steps,
-        jumped=np.zeros(count, np.bool_),
-    )
-    path.R[0, :joints] = np.eye(3).ravel()
-    path.R[0, joints:] = grid.geometry.frame[0]
-    path.p[0, :joints], path.p[0, joints:] = grid.geometry.centre, grid.geometry.middle
+    count = len(frames.released)
+    path = flat_path(grid, count)
+    path.tight = small_steps
     order = frames.order.copy()
     guided = np.zeros(count, np.bool_)
     if guide is not None:
