@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError
 
 from simulearn.errors import InputError, Message
-from simulearn.files import read_text, replacing
+from simulearn.files import parse_json, read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
@@ -70,9 +70,9 @@ class Limits(FilePart):
         answers: how many designs that differ are wanted; several take up to thrice the seconds.
     """
 
-    iterations: Annotated[int, Field(ge=1)] = 1000
+    iterations: Annotated[int, Field(ge=1, lt=2**31)] = 1000
     seconds: Positive = 30.0
-    corrections: Annotated[int, Field(ge=0)] = 2
+    corrections: Annotated[int, Field(ge=0, lt=2**31)] = 2
     answers: Annotated[int, Field(ge=1, le=MOST_ANSWERS)] = 1
 
     @property
@@ -168,14 +168,7 @@ def read_task(path: Path | str, *, paths: bool = False) -> Task:
     """
     try:
         folder = Path(path).parent if paths else None
-        return task_from_dict(json.loads(read_text(path)), paths=paths, folder=folder)
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise InputError(
-            f"{path}: is not valid JSON at {place}: {error.msg}", "task", str(path)
-        ) from error
-    except RecursionError as error:
-        raise InputError(f"{path}: lists are nested too deeply", "task", str(path)) from error
+        return task_from_dict(parse_json(read_text(path)), paths=paths, folder=folder)
     except InputError as error:
         if isinstance(error.__cause__, OSError | UnicodeDecodeError):
             raise
