@@ -168,7 +168,8 @@ def test_a_file_without_an_end_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("name", "words"), [("none", "there is no such file"), (".", "cannot be read")]
+    ("name", "words"),
+    [("none", "no such file"), (".", "cannot be read"), ("a\0b", "is not the name of a file")],
 )
 def test_what_cannot_be_read_is_named(tmp_path, name, words):
     with pytest.raises(InputError, match=words):
