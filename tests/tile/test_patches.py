@@ -59,7 +59,10 @@ def test_between_two_edges_it_begins_and_ends_at_them_in_the_directions_asked_fo
         ({"revolution": {"profile": [[1, 2]]}}, "revolution.profile is [[1, 2]]"),
         ({"revolution": {"profile": [[0, 0], [50, 50]]}}, "profile[0] has the radius 0"),
         ({"revolution": {"profile": CONE, "degrees": 400}}, "it is more than 0 and at most 360"),
-        ({"revolution": {"profile": CONE, "turns": 1}}, "turns is not a key here; the keys are profile"),
+        (
+            {"revolution": {"profile": CONE, "turns": 1}},
+            "is not a key here; the keys are profile, degrees",
+        ),
         ({"heights": {"z": "x^2", "x": [0, 1], "y": [0, 1]}}, "a power is written **"),
         ({"heights": {"z": "x", "x": [1, 0], "y": [0, 1]}}, "it is [from, to] in mm"),
         ({"heights": {"z": [[1, 2]], "x": [0, 1], "y": [0, 1]}}, "z is 1 x 2 numbers"),

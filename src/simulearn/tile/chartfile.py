@@ -141,6 +141,7 @@ def _of_heights(given: Heights) -> Chart:
             text = f"{name} is {shown(line)}; of an expression it is [from, to] in mm"
             raise InputError(text, "chart", name)
     expression = given.z
+    computed(expression, np.array(x), np.array(y))  # so that it is told here where it is wrong
     return heights(lambda a, b: computed(expression, a, b), x, y)
 
 
