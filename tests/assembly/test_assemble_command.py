@@ -74,6 +74,17 @@ def test_what_is_wrong_is_one_line(run, file, words, message):
     assert err.count("\n") == 1
 
 
+def test_an_obstacle_is_not_written_over(run, file):
+    wall = file.with_name("wall.glb")
+    trimesh.creation.box((10, 10, 10)).export(wall)
+    file.write_text(file.read_text().replace("wall.stl", "wall.glb"))
+    before = wall.read_bytes()
+    code, _, err = run("assemble", file, "-o", wall)
+    assert code == 1
+    assert "wall.glb: is what is read; name another file" in err
+    assert wall.read_bytes() == before
+
+
 def test_a_missing_obstacle_is_said_before_anything_is_simulated(run, file, monkeypatch):
     (file.parent / "wall.stl").unlink()
     monkeypatch.setattr(engines.Engine, "simulate", pytest.fail)

@@ -5,6 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
+import rhino3dm
 import trimesh
 
 from simulearn.errors import InputError
@@ -223,6 +224,24 @@ def test_a_wrong_file_is_named_with_its_place(tmp_path):
         path.write_text(json.dumps(task_of({"vertex": J1, "surface": {"file": file}})))
         with pytest.raises(InputError, match=rf"goals\[0\].surface: .*{file}: {words}"):
             read_task(path, paths=True)
+
+
+@pytest.mark.parametrize("name", ["best.json", "shape.3dm", "answer-3.json"])
+def test_a_search_writes_over_nothing_that_it_reads(name, tmp_path, run):
+    task = {"vertex": J3, "surface": {"file": "shape.3dm"}}
+    model = rhino3dm.File3dm()
+    model.Objects.AddSphere(rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 20.0))
+    model.Write(str(tmp_path / "shape.3dm"), 7)
+    path = tmp_path / (name if name.endswith("json") else "task.json")
+    path.write_text(json.dumps(task_of(task, engine="beams")))
+    before = path.read_bytes(), (tmp_path / "shape.3dm").read_bytes()
+    code, _, err = run("optimize", path, "-o", tmp_path)
+    assert code == 1
+    assert f"{name}: is what is read, and would be replaced" in err
+    code, _, err = run("rank", path, "-o", path)
+    assert code == 1
+    assert "is what is read" in err
+    assert (path.read_bytes(), (tmp_path / "shape.3dm").read_bytes()) == before
 
 
 def test_surfaces_out_of_reach_and_of_another_unit_are_told(tmp_path):

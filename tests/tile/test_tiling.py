@@ -204,13 +204,14 @@ def test_the_command_is_killed_and_goes_on_and_writes_all(tmp_path, run):
 
 
 def test_wrong_words_are_one_line(tmp_path, run):
-    surface = tmp_path / "ring.json"
+    surface = tmp_path / "tile.json"
     surface.write_text(json.dumps(RING), encoding="utf-8")
     for words, part in (
         (["--modules", "five"], '--modules is "five"; it is two numbers such as 5x3'),
         (["--modules", "8x1", "--scheduler", "x", "--workers", 1], "--workers is for this machine"),
         (["--modules", "8x1", "--material", tmp_path / "no.toml"], "there is no such file"),
         ([], "say how many modules"),
+        (["--modules", "8x1", "-o", tmp_path], "tile.json: is what is read, and would be replaced"),
     ):
         code, _, errors = run("tile", surface, "-o", tmp_path / "out", *words)
         assert code == 1

@@ -56,6 +56,9 @@ def assemble(
     files = output or []
     outputs.check(files, file, outputs.ASSEMBLED)
     assembly = read_assembly(file)
+    grids = [part.file for part in assembly.parts if part.file is not None]
+    for path in files:
+        outputs.check_place(path, [*grids, *(one.file for one in assembly.obstacles)])
     answering = engine_of(engine, model, mesh)
     with preparing(quiet=as_json):
         with counting("frames", quiet=as_json) as progress:

@@ -13,7 +13,7 @@ from simulearn.files import parse_json, read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
-from simulearn.inverse.goalfile import FilePart, Goal, Positive
+from simulearn.inverse.goalfile import CurveFile, FilePart, Goal, Positive, SurfaceFile
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.tasktext import KEYS, MOST_ANSWERS, line_of, place_of
 from simulearn.inverse.wanting import Shapes, goals_of, rows_of
@@ -130,6 +130,14 @@ class Task(FilePart):
     def warnings(self) -> tuple[Message, ...]:
         """What was mended or guessed in surfaces and curves."""
         return tuple(self._shapes.warnings)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of surfaces and curves."""
+        here = self._shapes.folder or Path()
+        said = [one for goal in self.goals for one in (goal.surface, goal.curve, goal.away_from)]
+        names = [one.file for one in said if isinstance(one, SurfaceFile | CurveFile)]
+        return tuple(here / name for name in names if name is not None)
 
     @property
     def shapes_digest(self) -> str:
