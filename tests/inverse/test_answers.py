@@ -9,6 +9,8 @@ import pytest
 from PIL import Image
 from toys import alone, toy
 
+from simulearn.cli.answers_report import answers_table
+from simulearn.collisions import Collision
 from simulearn.errors import InputError
 from simulearn.grid import grid_to_dict, make, read_grid
 from simulearn.inverse import Past, Space, optimize, search, search_figures, task_from_dict
@@ -21,6 +23,8 @@ from simulearn.inverse.problem import Problem
 from simulearn.inverse.task import Free
 from simulearn.material import load_material
 from simulearn.simulate import Result, engine
+
+ONE = Collision(("beam 3", "beam 7"), 11, 0.0, 8, 1.25, (1.0, -2.0, 3.5))
 
 
 @pytest.fixture
@@ -192,6 +196,40 @@ def test_one_search_comes_to_several_answers_and_goes_on(task, fea, tmp_path):
     again = optimize(task, engine=ByToy("beams"), before=read_past(tmp_path, "name"))
     assert fea.calls == []
     assert [one.grid.digest for one in again.answers] == [one.grid.digest for one in answers]
+
+
+def test_an_answer_that_collides_is_not_the_best_while_another_does_not(
+    task, fea, tmp_path, monkeypatch
+):
+    first = optimize(task, engine=ByToy("beams"))
+    closest = first.answers[0].grid.digest
+    simulate = ByToy.simulate
+
+    def colliding(self, grids, progress=None, cancel=None):
+        found = simulate(self, grids, progress, cancel)
+        if self is not fea:
+            return found
+        return [
+            dataclasses.replace(one, collisions=(ONE,)) if one.grid.digest == closest else one
+            for one in found
+        ]
+
+    monkeypatch.setattr(ByToy, "simulate", colliding)
+    found = optimize(task, engine=ByToy("beams"))
+    (bad,) = (one for one in found.answers if one.collides)
+    assert bad.grid.digest == closest
+    assert not bad.on_front
+    assert not found.answers[0].collides
+    assert not found.check.collisions
+    assert "answers-collide" in {message.code for message in found.warnings}
+    assert "parts run through each other" in bad.words
+    assert bad.to_dict()["collisions"][0]["code"] == "beams-pass"
+    assert [column.header for column in answers_table(found.answers).columns][-1] == "collides"
+    # A run that goes on knows it, though it simulates nothing.
+    write_past(tmp_path, "name", found.steps, found.checks)
+    again = optimize(task, engine=ByToy("beams"), before=read_past(tmp_path, "name"))
+    assert [one.collides for one in again.answers] == [one.collides for one in found.answers]
+    assert not again.check.collisions
 
 
 def test_one_answer_is_as_it_was(task, fea):
