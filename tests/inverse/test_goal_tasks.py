@@ -256,6 +256,10 @@ def test_surfaces_out_of_reach_and_of_another_unit_are_told(tmp_path):
     (message,) = out_of_reach(small.start, small.aims)
     assert message.code == "targets-tiny"
     assert "if its file is in metres" in message.message
+    inches = {"heights": "0.1*x", "x": [0, 3], "y": [0, 3]}
+    small = task_from_dict(task_of({"vertices": "joints", "surface": inches}))
+    (message,) = out_of_reach(small.start, small.aims)
+    assert "if its file is in inches" in message.message
 
 
 def test_a_search_tells_each_goal(beams, tmp_path, run, monkeypatch):
