@@ -169,6 +169,14 @@ def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
 
 
+def path_from(folder: Path, path: Path) -> str:
+    """Return a path as seen from a folder, with slashes; on another drive the whole path."""
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return path.resolve().as_posix()
+
+
 def marked_encoding(data: bytes) -> str | None:
     """Return the encoding that a byte order mark names; None where bytes begin with none."""
     return next((name for mark, name in MARKS.items() if data.startswith(mark)), None)

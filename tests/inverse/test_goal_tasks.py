@@ -220,6 +220,10 @@ def test_what_is_wrong_is_named(goal, words):
 
 def test_a_wrong_file_is_named_with_its_place(tmp_path):
     path = tmp_path / "task.json"
+    task = task_of({"vertex": J1, "surface": {"file": "a.stl", "unit": "parrots"}})
+    path.write_text(json.dumps(task))
+    with pytest.raises(InputError, match=r'surface.unit is wrong: "parrots" is no unit'):
+        read_task(path, paths=True)
     for file, words in (("none.stl", "there is no such file"), ("task.json", "the ending is not")):
         path.write_text(json.dumps(task_of({"vertex": J1, "surface": {"file": file}})))
         with pytest.raises(InputError, match=rf"goals\[0\].surface: .*{file}: {words}"):

@@ -1,7 +1,6 @@
 """The task file: a grid, goals, what may change, and how to search; JSON, `simulearn.task/1`."""
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -9,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError
 
 from simulearn.errors import InputError, Message
-from simulearn.files import parse_json, read_text, replacing
+from simulearn.files import parse_json, path_from, read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
@@ -204,9 +203,7 @@ def _moved_paths(data: dict[str, Any], task: Task, folder: Path) -> None:
         for key in ("surface", "curve", "away_from"):
             said = goal.get(key)
             if isinstance(said, dict) and "file" in said:
-                said["file"] = Path(
-                    os.path.relpath((here / said["file"]).resolve(), folder.resolve())
-                ).as_posix()
+                said["file"] = path_from(folder, here / said["file"])
 
 
 def task_to_dict(task: Task) -> dict[str, Any]:

@@ -120,6 +120,9 @@ class Shapes:
         except InputError as error:
             if str(error).startswith(where):
                 raise
+            if error.code == "unit-name":
+                text = f"{where}.unit is wrong: {error}"
+                raise InputError(text, "task", f"{where}.unit") from error
             raise InputError(f"{where}: {error}", error.code, where) from error
         self.warnings += [
             Message(one.code, where, f"{where}: {one.message}") for one in shape.warnings
