@@ -11,7 +11,7 @@ from toys import alone, toy
 
 from simulearn.cli.answers_report import answers_table
 from simulearn.collisions import Collision
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.grid import grid_to_dict, make, read_grid
 from simulearn.inverse import Past, Space, optimize, search, search_figures, task_from_dict
 from simulearn.inverse.answers import print_times
@@ -19,6 +19,7 @@ from simulearn.inverse.archive import LEAST, Archive, Distance
 from simulearn.inverse.checking import Check
 from simulearn.inverse.front import Answer, actuators_of, choice, non_dominated, on_front
 from simulearn.inverse.keeping import ANSWERS, read_past, write_past
+from simulearn.inverse.probability import Probability
 from simulearn.inverse.problem import Problem
 from simulearn.inverse.task import Free
 from simulearn.material import load_material
@@ -230,6 +231,23 @@ def test_an_answer_that_collides_is_not_the_best_while_another_does_not(
     again = optimize(task, engine=ByToy("beams"), before=read_past(tmp_path, "name"))
     assert [one.collides for one in again.answers] == [one.collides for one in found.answers]
     assert not again.check.collisions
+
+
+def test_of_a_robust_task_the_best_is_what_most_prints_meet_the_goals_of():
+    grid = make("saddle", length=60.0)
+
+    def one(share, *collisions):
+        of = Probability(9, 9, "toy", (1.0,), (share,), share, (0.0, 1.0), 1.0, 2.0)
+        return Answer(Check(grid, 1.0, 1.0, passes=collisions), 3, 90.0, None, probability=of)
+
+    passing = Message("beams-pass", "beam 3", "parts run through each other")
+    assert one(0.8).more_robust_than(one(0.6))
+    assert not one(0.6).more_robust_than(one(0.8))
+    assert not one(0.8, passing).more_robust_than(one(0.6))
+    assert one(0.6).more_robust_than(one(0.8, passing))
+    unknown = dataclasses.replace(one(0.8), probability=None)
+    assert not unknown.more_robust_than(one(0.6))
+    assert one(0.6).more_robust_than(unknown)
 
 
 def test_one_answer_is_as_it_was(task, fea):

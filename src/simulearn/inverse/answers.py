@@ -228,6 +228,8 @@ class _Several:
         best = answers[0]
         if not search.task.robust:
             best = min(answers, key=attrgetter("collides", "error"))
+        for one in answers if search.task.robust else ():
+            best = one if one.more_robust_than(best) else best
         others = [one for one in answers if one is not best]
         if best is not answers[0]:  # beside which the first may be none any more
             most = self.good + FAR * self.slack

@@ -80,6 +80,13 @@ class Answer:
             np.inf if self.print_seconds is None else round(self.print_seconds / 60),
         )
 
+    def more_robust_than(self, other: "Answer") -> bool:
+        """Whether prints of it meet the goals more often, or it does not collide and other does."""
+        mine, known = self.probability, other.probability
+        if mine is None or self.collides > other.collides:
+            return False
+        return self.collides < other.collides or known is None or mine.better_than(known)
+
     @property
     def words(self) -> str:
         """What it takes, in a line."""
