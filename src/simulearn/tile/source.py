@@ -64,7 +64,12 @@ def read_tiling(
     else:
         surface = read_surface(path, unit)
         _sized(path, surface.vertices, unit)
-        chart = unrolled(surface)
+        try:
+            chart = unrolled(surface)
+        except InputError as error:  # a face that is taken whole is likely why
+            why = [m.message for m in surface.warnings if m.code == "surface-untrimmed"]
+            text = "; ".join([f"{path}: {error}", *why])
+            raise InputError(text, error.code, error.where) from error
     count = modules or counted(chart, size or 0.0)
     tiling = from_chart(chart, count, cells, surface)
     return tiling if surface is None else tiling.warned(*surface.warnings)
