@@ -8,6 +8,7 @@ import pytest
 from toys import alone, toy
 
 from simulearn.cli import inverse as cli
+from simulearn.collisions import Collision
 from simulearn.errors import InputError
 from simulearn.grid import Grid, grid_to_dict, make
 from simulearn.inverse import Space, optimize, rank, robust, search, task_from_dict
@@ -210,6 +211,34 @@ def test_a_robust_search_finds_a_design_whose_prints_meet_the_goals_more_often(f
     again = optimize(task, before=read_past(tmp_path, identity(task, None)))
     assert again.probability.together == pytest.approx(found.probability.together)
     np.testing.assert_allclose(again.grid.joints, found.grid.joints, atol=0.1)
+    # Nor where its time is over, or other answers were looked for in between.
+    late = task.model_copy(update={"limits": task.limits.model_copy(update={"seconds": 0.01})})
+    again = optimize(late, before=read_past(tmp_path, identity(task, None)))
+    np.testing.assert_array_equal(again.grid.joints, found.grid.joints)
+    assert again.probability.together == pytest.approx(found.probability.together)
+    several = late.model_copy(update={"limits": task.limits.model_copy(update={"answers": 3})})
+    more = optimize(several, before=read_past(tmp_path, identity(task, None)))
+    write_past(tmp_path, identity(task, None), more.steps, more.checks)
+    last = optimize(several, before=read_past(tmp_path, identity(task, None)))
+    for one in (more, last):
+        assert one.probability.together == pytest.approx(found.probability.together)
+        assert one.answers[0].share == one.probability.together
+
+
+def test_a_robust_design_that_collides_is_not_taken(fragile, monkeypatch):
+    one = Collision(("beam 0", "beam 2"), 11, 0.0, 8, 1.25, (1.0, -2.0, 3.5))
+    own = Toy._one
+
+    def colliding(self, grid):
+        moved = not np.allclose(grid.centred.joints[3], 50.0)
+        return dataclasses.replace(own(self, grid), collisions=(one,) * moved)
+
+    monkeypatch.setattr("simulearn.inverse.checking.engine", lambda name, mesh: engine)
+    engine = Toy("fea")
+    monkeypatch.setattr(Toy, "_one", colliding)
+    found = optimize(task_from_dict(fragile | {"robust": True}))
+    assert not found.check.collisions
+    assert found.probability is found.nominal
 
 
 def test_where_nothing_is_more_robust_the_best_design_stays(fragile):

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from modules import RING, command, here, pretended, ring
+from modules import RING, command, here, pretended, ring, wavy
 from PIL import Image
 
 from simulearn.assembly import read_assembly, simulate_assembly
@@ -97,17 +97,10 @@ def test_what_was_found_is_not_searched_again(tmp_path):
     assert len(seen) == 2 * count
 
 
-def shell():
-    chart = heights(
-        lambda x, y: 25 * np.cos(x / 90 + 0.3) * np.cos(y / 80), (-90.0, 90.0), (-60.0, 60.0)
-    )
-    return from_chart(chart, (3, 2), (1, 1))
-
-
 def test_borders_come_together_in_rounds_and_the_best_is_kept():
     stages = []
     result = tile(
-        shell(), replace(SMALL, gap_mm=0.05, rounds=3), None, here(pretended), stages.append
+        wavy(), replace(SMALL, gap_mm=0.05, rounds=3), None, here(pretended), stages.append
     )
     gaps = [gap for gap, _ in result.rounds]
     assert len(gaps) > 1
@@ -138,7 +131,7 @@ def test_a_cluster_searches_too():
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
     ) as cluster:
         team = cluster_workers(cluster.scheduler_address, work=pretended)
-        result = tile(shell(), replace(SMALL, rounds=0), None, team)
+        result = tile(wavy(), replace(SMALL, rounds=0), None, team)
     assert len(result.answers) == len(result.grids) > 1
 
 
@@ -185,8 +178,8 @@ def test_an_answer_that_is_worse_is_not_taken():
             return answer
         return replace(answer, joints=(2 * np.array(answer.joints)).tolist())
 
-    first = tile(shell(), replace(SMALL, rounds=0), None, here(pretended))
-    result = tile(shell(), replace(SMALL, gap_mm=1e-6, rounds=2), None, here(worse))
+    first = tile(wavy(), replace(SMALL, rounds=0), None, here(pretended))
+    result = tile(wavy(), replace(SMALL, gap_mm=1e-6, rounds=2), None, here(worse))
     assert result.fit.gap_mm == first.fit.gap_mm
 
 
@@ -220,13 +213,14 @@ def test_the_command_is_killed_and_goes_on_and_writes_all(tmp_path, run):
 
 
 def test_wrong_words_are_one_line(tmp_path, run):
-    surface = tmp_path / "ring.json"
+    surface = tmp_path / "tile.json"
     surface.write_text(json.dumps(RING), encoding="utf-8")
     for words, part in (
         (["--modules", "five"], '--modules is "five"; it is two numbers such as 5x3'),
         (["--modules", "8x1", "--scheduler", "x", "--workers", 1], "--workers is for this machine"),
         (["--modules", "8x1", "--material", tmp_path / "no.toml"], "there is no such file"),
         ([], "say how many modules"),
+        (["--modules", "8x1", "-o", tmp_path], "tile.json: is what is read, and would be replaced"),
     ):
         code, _, errors = run("tile", surface, "-o", tmp_path / "out", *words)
         assert code == 1

@@ -10,7 +10,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn.cli.base import Json, app, err, folder_of, out, warn, write_json
+from simulearn.cli.base import Json, app, err, folder_of, keep_sources, out, warn, write_json
 from simulearn.cli.progress import bar, counting, preparing
 from simulearn.errors import InputError
 from simulearn.files import replacing
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from simulearn.fabricate.bill import Row
     from simulearn.tile import Stage, Tiled
     from simulearn.tile.pieces import Piece
+
+
+WRITTEN = ("assembly.*", "deviation.png", "bill.csv", "tile.json")
 
 
 @app.command("tile")
@@ -110,6 +113,8 @@ def tile_(
     count = None if modules is None else _pair(modules, "--modules", "5x3")
     own = _pair(cells, "--cells", "2x2")
     tiling = read_tiling(surface, count, size, own, unit, onto)
+    sources = [Path(name) for name in (surface, onto, material) if name is not None]
+    keep_sources(output, WRITTEN, sources)
     settings = Settings(
         alike_mm=alike,
         gap_mm=gap,
@@ -130,6 +135,9 @@ def tile_(
     try:
         with preparing(quiet=as_json), _stages(quiet=as_json) as progress:
             tiled = tile(tiling, settings, output, team, progress)
+    except InputError:
+        warn(tiling.warnings)  # they may say why
+        raise
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise

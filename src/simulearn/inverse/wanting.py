@@ -70,7 +70,8 @@ class Shapes:
         if where not in self.found:
             given = [name for name in ("file", "heights", "vertices") if getattr(said, name)]
             if len(given) != 1:
-                text = f"{where} has one of file, heights, and vertices with faces"
+                has = " and ".join(given) or "no shape"
+                text = f"{where} has {has}; it has one of file, heights, and vertices with faces"
                 raise InputError(text, "task", where)
             surface = self._read(where, lambda: self._surface(said, given[0], where))
             self.found[where] = surface.placed(_place(said.place, f"{where}.place"))
@@ -82,7 +83,9 @@ class Shapes:
         """Return a curve in its place; raises as `surface` does."""
         if where not in self.found:
             if (said.file is None) == (said.points is None):
-                raise InputError(f"{where} has one of file and points", "task", where)
+                has = "no shape" if said.file is None else "both"
+                text = f"{where} has {has}; it has one of file and points"
+                raise InputError(text, "task", where)
             curve = self._read(where, lambda: self._curve(said, where))
             self.found[where] = curve.placed(_place(said.place, f"{where}.place"))
         known = self.found[where]
@@ -117,6 +120,9 @@ class Shapes:
         except InputError as error:
             if str(error).startswith(where):
                 raise
+            if error.code == "unit-name":
+                text = f"{where}.unit is wrong: {error}"
+                raise InputError(text, "task", f"{where}.unit") from error
             raise InputError(f"{where}: {error}", error.code, where) from error
         self.warnings += [
             Message(one.code, where, f"{where}: {one.message}") for one in shape.warnings
@@ -179,7 +185,7 @@ def _agree(goal: Goal, where: str) -> None:
     allowed = OF[key]
     if len(whose) != bool(allowed) or (whose and whose[0] not in allowed):
         needed = " or ".join(allowed) or "neither vertices nor faces: it is about all beams"
-        has = " and ".join(whose) or "neither"
+        has = " and ".join(whose) or "no vertex and no face"
         raise InputError(f"{where} has {has}; with {key} it has {needed}", "task", where)
     if not goal.slide and key not in ("surface", "curve", "plane"):
         text = f"{where}.slide is false; only on a surface, curve or plane a vertex can slide"

@@ -37,12 +37,12 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     messages: list[Message] = []
     vertices = np.ascontiguousarray(vertices, np.float64)
     faces = np.ascontiguousarray(faces, np.int64)
-    there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
     known = np.all((faces >= 0) & (faces < len(vertices)), axis=1)
-    sound = known & np.all(there[np.where(known[:, None], faces, 0)], axis=1)
-    faces = _kept(
-        faces, sound, "have corners that are no finite numbers", "surface-not-finite", messages
-    )
+    why = "name vertices that are not there"
+    faces = _kept(faces, known, why, "surface-not-there", messages)
+    there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
+    why = f"have corners that are no numbers below {FARTHEST:g}"
+    faces = _kept(faces, there[faces].all(axis=1), why, "surface-not-finite", messages)
     vertices, faces = _merged(vertices, faces)
     corners = vertices[faces]
     double = np.linalg.norm(
