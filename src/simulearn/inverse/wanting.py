@@ -24,7 +24,7 @@ from simulearn.surfaces import (
     Curve,
     Plane,
     Surface,
-    mended,
+    mended_surface,
     read_curve,
     read_surface,
     surface_of_heights,
@@ -99,10 +99,9 @@ class Shapes:
                 raise InputError(text, "task", where)
             x, y = (said.x[0], said.x[1]), (said.y[0], said.y[1])
             return surface_of_heights(said.heights, x, y, said.step)
-        vertices, faces, messages = mended(
+        return mended_surface(
             np.array(said.vertices, float), np.array(said.faces or [], np.int64).reshape(-1, 3)
         )
-        return Surface(vertices, faces, tuple(messages))
 
     def _curve(self, said: CurveFile, where: str) -> Curve:
         if said.file is not None:

@@ -29,15 +29,17 @@ export function unitWords(name) {
   return text === key ? name : text;
 }
 
-/** Ask for the unit, or the width, of a drawing.
+/** Ask for the unit, or the width, of a drawing, or the unit of a surface.
  *
- * size: width and height in units of the file. guess: the likely unit, or null. now: the unit in use,
- * or null where none is. reason: why the page asks. choose({ unit, width }): one of both is null.
+ * size: width and height (and depth of a surface) in units of the file. guess: the likely unit, or null.
+ * now: the unit in use, or null where none is. reason: why the page asks. choose({ unit, width }): one of
+ * both is null; of a surface always the width.
  */
 export const UnitDialog = {
   props: { file: String, size: Array, guess: Object, now: Object, reason: String, choose: Function },
   setup(props) {
     const id = useId();
+    const flat = props.size.length === 2;
     const first = props.now ?? props.guess;
     const chosen = ref(first && first.name !== "unit" ? first.name : first ? "width" : null);
     const width = ref(first ? first.mm * props.size[0] : WIDTH);
@@ -71,13 +73,13 @@ export const UnitDialog = {
           h("legend", t("drawing.unitAsk")),
           ...sizesBy(props.size, [props.guess, props.now]).map(({ unit, size }) =>
             option(unit, unitWords(unit), sizeWords(size), tagOf(unit))),
-          option("width", t("drawing.byWidth"),
+          flat && option("width", t("drawing.byWidth"),
             props.size[0] > 0 ? sizeWords([width.value, heightFor(props.size, width.value)]) : "–"),
           chosen.value === "width" && typed(),
         ]),
       ],
       actions: () => [
-        button(t("drawing.take"), run, { kind: "primary", disabled: chosen.value === null }),
+        button(t(flat ? "drawing.take" : "surface.unitTake"), run, { kind: "primary", disabled: chosen.value === null }),
         button(t("common.cancel"), close),
       ],
     });
