@@ -1,7 +1,7 @@
 // The document that the page edits: a grid, goals, surfaces, what is to be printed on, own materials.
 
 import { FARTHEST, isNumber, isPlace } from "./geometry.js";
-import { fits, readGoal } from "./kinds.js";
+import { GOAL_KEYS, fits, readGoal } from "./kinds.js";
 import { same } from "./numbering.js";
 import { readSurfaces } from "./surfaces.js";
 import { isIndex } from "./vertices.js";
@@ -87,8 +87,8 @@ export function readDocument(data) {
   const grid = readGrid(given.grid);
   check(Array.isArray(goals) && goals.length <= MOST_GOALS, `goals are not a list of at most ${MOST_GOALS}`);
   const surfaces = readSurfaces(given.surfaces ?? [], check);
-  const usual = ["vertex", "target", "weight"]; // what most goals have
-  const aims = goals.map((goal, k) => readGoal(object(goal, `goals[${k}]`, usual), `goals[${k}]`, grid, surfaces, check));
+  const aims = goals.map((goal, k) => (
+    readGoal(object(goal, `goals[${k}]`, GOAL_KEYS), `goals[${k}]`, grid, surfaces, check)));
   check(["fixed", "free"].includes(pose), `pose is ${shown(pose)}; it is "fixed" or "free"`);
   return {
     schema: SCHEMA, name, grid, goals: aims, surfaces, pose,

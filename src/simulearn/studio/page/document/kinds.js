@@ -18,7 +18,7 @@ export const KINDS = {
 export const ITSELF = "itself"; // what beams can be away from besides surfaces
 const WHOSE = ["vertex", "vertices", "face", "faces"];
 const WORDS = ["joints", "beams"]; // all joints, the middles of all beams
-const KEYS = [...WHOSE, ...Object.keys(KINDS), "slide", "clearance", "weight", "tolerance"];
+export const GOAL_KEYS = [...WHOSE, ...Object.keys(KINDS), "slide", "clearance", "weight", "tolerance"];
 
 /** Return which of KINDS a goal is of, or null where it wants nothing or several things. */
 export function kindOf(goal) {
@@ -67,8 +67,6 @@ const RULES = {
 export function readGoal(data, where, grid, surfaces, check) {
   const said = Object.entries(data).filter(([, value]) => value !== null);
   const goal = { ...Object.fromEntries(said), weight: data.weight ?? 1 };
-  const strange = Object.keys(goal).find((key) => !KEYS.includes(key));
-  check(strange === undefined, `${where}.${strange} is not a key of a goal`);
   for (const key of ["vertex", "face"]) if (key in goal) goal[key] = named(goal[key]);
   for (const key of ["vertices", "faces"]) if (Array.isArray(goal[key])) goal[key] = goal[key].map(named);
   for (const key of WHOSE) if (key in goal) check(namesParts(goal, key, grid), `${where}.${key} is ${brief(goal[key])}; the grid has no such ${key}`);

@@ -131,7 +131,7 @@ export const GoalList = {
           }, [h("span", { "aria-hidden": "true" }, " → "), mm(then)]),
         ]),
         h("p", { class: "measure-name" }, t("panels.meanError")),
-        (goals.length > 1 || each[far]?.vertex) && known.length > 0 && h("p", { class: "measure-more" },
+        goals.length > 1 && known.length > 0 && h("p", { class: "measure-more" },
           t("panels.farthest", {
             name: each[far].vertex ? vertexWords(each[far].vertex) : goalWords(goals[far]), mm: mm(most),
           })),

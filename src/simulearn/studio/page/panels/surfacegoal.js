@@ -117,11 +117,9 @@ export const SurfaceFacts = {
           [t("surface.unit"), t(`surface.unit_${by}`, { unit: unitWords(unit) })],
         ]),
         messages.length > 0 && h("ul", { class: "mends" }, messages.map(message)),
-        h("div", { class: "row" }, [
-          button(t("surface.change"), () => askUnit(told), {
-            kind: "small", "aria-label": `${t("surface.unit")} ${props.surface.name}: ${t("surface.change")}`,
-          }),
-        ]),
+        button(t("surface.change"), () => askUnit(told), {
+          kind: "small", "aria-label": `${t("surface.unit")}: ${t("surface.change")}`,
+        }),
       ]);
     };
   },

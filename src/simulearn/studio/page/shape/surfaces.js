@@ -2,11 +2,10 @@
 
 import { THREE } from "/libraries/three.js";
 import { plain } from "./material.js";
+import { cellOf } from "./net.js";
 
 const SHEER = { light: 0.16, dark: 0.22 }; // how much of the colour is seen
 const CREASE = 30; // degrees between faces, from which on their edge is drawn
-const LINES = 12; // of the net across a surface, about
-const STEPS = [1, 2, 5, 10]; // times a power of ten: distances of the net's lines
 
 const VERTEX = `
 varying vec3 vPlace, vNormal, vSeen;
@@ -32,13 +31,6 @@ void main() {
   float rim = 1.0 - abs(normalize(vSeen).z);
   gl_FragColor = vec4(colour, clamp(sheer * (0.75 + 1.1 * rim) + 0.32 * net, 0.0, 0.75));
 }`;
-
-/** Return the distance of the net's lines on something so large: 1, 2 or 5 times a power of ten. */
-export function cellOf(size) {
-  const fine = size / LINES;
-  const power = 10 ** Math.floor(Math.log10(fine));
-  return power * STEPS.find((step) => step * power >= fine * 0.999);
-}
 
 /** Create what draws surfaces. */
 export function createSurfaces() {
