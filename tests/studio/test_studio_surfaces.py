@@ -7,6 +7,7 @@ import pytest
 import rhino3dm
 import trimesh
 from asking import Client, problem
+from sheets import broken, exported, sheet
 
 import synthetic
 from simulearn.grid import grid_from_dict, grid_to_dict, make
@@ -44,21 +45,6 @@ def sent(client, data, name, **options):
         content=data,
         headers={"Content-Type": "application/octet-stream"},
     )
-
-
-def sheet(count=12, size=160.0):
-    """A dish of count squares a side."""
-    x, y = np.meshgrid(*[np.linspace(-size / 2, size / 2, count + 1)] * 2)
-    vertices = np.c_[x.ravel(), y.ravel(), 20 * np.cos(x.ravel() / size * 3)]
-    k = np.arange((count + 1) ** 2).reshape(count + 1, count + 1)
-    a, b, c, d = k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]
-    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
-    return trimesh.Trimesh(vertices, faces, process=False)
-
-
-def exported(mesh, kind):
-    data = mesh.export(file_type=kind)
-    return data if isinstance(data, bytes) else data.encode()
 
 
 @pytest.fixture
@@ -107,11 +93,8 @@ def test_an_odd_size_is_asked_about_and_a_unit_taken(client):
 
 def test_what_was_mended_is_told_with_its_places(client):
     mesh = sheet()
-    faces = np.delete(mesh.faces, [130, 131], axis=0)
-    faces[50] = faces[50, ::-1]
     places = mesh.vertices[mesh.faces[[130, 131]]].mean(axis=(0, 1))
-    broken = trimesh.Trimesh(mesh.vertices, faces, process=False)
-    surface = sent(client, exported(broken, "ply"), "hood.ply").json()["surface"]
+    surface = sent(client, exported(broken(mesh), "ply"), "hood.ply").json()["surface"]
     told = {message["code"]: message for message in surface["messages"]}
     assert set(told) == {"surface-holes", "surface-flipped"}
     np.testing.assert_allclose(told["surface-holes"]["places"], [places], atol=2)

@@ -16,7 +16,7 @@ import { takeSurface } from "./surfaces.js";
 
 const SURFACES = ".stl,.obj,.ply,.glb,.3dm";
 const ENDINGS = `.json,.dxf,.svg,.csv,.txt,.html,.toml,${SURFACES},application/json,image/svg+xml`;
-const LONG = 30_000; // characters of a link that hardly any program passes on whole
+const LONG = 8000; // characters of a link that many programs do not pass on whole
 const PASTED = [[/^<(svg|\?xml|!--)/, "common.pastedDrawing"], [/^[{[]/, "common.pasted"]]; // how it begins
 const LATE = 300; // ms after which the page says that it reads a file
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
@@ -126,7 +126,7 @@ export function saveFile({ gridOnly = false } = {}) {
 /** Save grid, goals and surfaces as a task file, which the command line searches with. */
 export function saveTask() {
   const { document } = state;
-  const text = JSON.stringify(taskFile(document), null, 1);
+  const text = JSON.stringify(taskFile(document), null, document.surfaces.length ? 0 : 1);
   download(new Blob([text], { type: "application/json" }), `${fileName()}.task.json`);
   if (document.materials.length && chosenOwn() >= 0)
     notify(t("surface.taskMaterial", { name: document.grid.material }));
