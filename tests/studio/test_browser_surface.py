@@ -41,7 +41,7 @@ def mean(panel):
     return float(value.inner_text().removesuffix(" mm"))
 
 
-def test_a_dropped_surface_becomes_a_goal_that_tells_itself_and_can_be_changed(page, studio):
+def test_a_dropped_surface_becomes_a_goal_that_tells_itself_and_can_be_changed(page, studio, axe):
     do.opened(page, studio.url)
     before = do.document(page)
     drop(page, "hood.stl", exported(broken(sheet()), "stl"))
@@ -53,9 +53,10 @@ def test_a_dropped_surface_becomes_a_goal_that_tells_itself_and_can_be_changed(p
     expect(do.shape(page).locator(".note-line.note-goal")).to_have_count(9)
     # What was mended, and where.
     expect(do.fact(panel, "Unit")).to_have_text("Millimetres: the file does not say")
-    hole = do.button(panel, re.compile("^Has a hole"))
+    hole = do.button(panel, re.compile("^Holes"))
     hole.focus()
     expect(do.shape(page).locator(".note-ring.note-collision")).to_have_count(1)
+    assert axe(page) == []
     hole.blur()
     expect(do.shape(page).locator(".note-ring.note-collision")).to_have_count(0)
     # Only one joint, which may not slide and has a tolerance.

@@ -126,6 +126,7 @@ def _described(surface: Surface, kind: str, name: str, unit: str | None) -> dict
         **mesh,
         "format": kind.upper() if kind != "3dm" else "Rhino",
         "triangles": len(surface.faces),
+        "apart_mm": apart,
         "unit": unit or {"glb": "m"}.get(kind, "mm"),
         "unit_by": said,
         "size": (high - low).round(3).tolist(),

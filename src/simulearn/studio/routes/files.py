@@ -146,6 +146,7 @@ class SurfaceFacts(BaseModel):
     faces: list[list[int]]
     format: str
     triangles: Annotated[int, Field(description="of the file")]
+    apart_mm: Annotated[float, Field(description="from the file's surface, where simplified")]
     unit: str
     unit_by: Literal["given", "format", "file", "guess"]
     size: Point

@@ -79,7 +79,7 @@ function goal(one, k, facts) {
         "aria-label": facts === null ? t("panels.selectGoal", { name })
           : t("panels.goalFacts", { name, mm: mm(facts.mean) }),
         onClick: () => select({ goal: k }),
-      }, label) : h("h3", { class: "goal-name" }, label),
+      }, label) : h("h2", { class: "goal-name" }, label),
       h("span", { class: ["goal-error numbers", { old: stale.value }] }, facts === null ? "–" : mm(facts.mean)),
       iconButton("trash", t("panels.removeGoal", { name }), async (event) => {
         const list = event.currentTarget.closest("ol");

@@ -4,6 +4,7 @@ import { h, onBeforeUnmount } from "/libraries/vue.js";
 import { setSlide, setTolerance, setVertices, setWeight } from "../document/goals.js";
 import { boxOf } from "../document/surfaces.js";
 import { open } from "../service/files.js";
+import { mm, number } from "../service/format.js";
 import { fileOf, showPlaces } from "../service/surfaces.js";
 import { edit, endMerge, state, view } from "../store.js";
 import { UNITS } from "../document/imported.js";
@@ -85,9 +86,9 @@ export const SurfaceFacts = {
   setup(props) {
     onBeforeUnmount(() => showPlaces(null));
     const askUnit = ({ file, options, facts: { unit, size } }) => {
-      const mm = UNITS[unit] ?? 1;
+      const length = UNITS[unit] ?? 1; // mm
       state.dialog = {
-        name: "unit", file: file.name, size: size.map((x) => x / mm), now: { name: unit, mm },
+        name: "unit", file: file.name, size: size.map((x) => x / length), now: { name: unit, mm: length },
         choose: ({ unit: chosen }) => open(file, { ...options, meant: "surface", unit: chosen }, props.surface.name),
       };
     };
@@ -98,7 +99,9 @@ export const SurfaceFacts = {
     const hide = () => showPlaces(null);
     const message = ({ code, message: text, places }, n) => {
       const key = `surface.m_${code}`;
-      const words = view.language !== "en" && t(key) !== key ? t(key) : sentence(text);
+      const { triangles, apart_mm: apart } = fileOf(props.surface).facts;
+      const values = { all: number(triangles), n: number(props.surface.faces.length), mm: mm(apart) };
+      const words = t(key) === key ? sentence(text) : t(key, values);
       return h("li", { key: n }, places.length === 0 ? h("span", { class: "mend-text" }, words) : h("button", {
         type: "button", class: "mend-text", title: t("surface.places"), onClick: see(places),
         onFocus: see(places), onBlur: hide, onPointerenter: () => !phone.matches && showPlaces(places),
@@ -116,10 +119,10 @@ export const SurfaceFacts = {
           [t("surface.size"), size],
           [t("surface.unit"), t(`surface.unit_${by}`, { unit: unitWords(unit) })],
         ]),
-        messages.length > 0 && h("ul", { class: "mends" }, messages.map(message)),
         button(t("surface.change"), () => askUnit(told), {
           kind: "small", "aria-label": `${t("surface.unit")}: ${t("surface.change")}`,
         }),
+        messages.length > 0 && h("ul", { class: "mends" }, messages.map(message)),
       ]);
     };
   },
