@@ -91,6 +91,11 @@ def test_a_surface_elsewhere_is_searched_for_and_saved_as_a_task(page, studio, t
     panel = goals(page)
     expect(page.get_by_text("lies elsewhere than the grid")).to_be_visible()
     expect(panel.get_by_label("The shape may be placed anywhere")).to_be_checked()
+    # It is asked of another grid, too.
+    do.button(page, "Library").click()
+    page.get_by_role("dialog").get_by_role("button", name=re.compile("^saddle")).click()
+    expect(page.get_by_label("Name of the design")).to_have_value("saddle")
+    expect(panel.get_by_role("heading", name="All joints on roof")).to_be_visible()
     start = mean(panel)
     assert start < 20
     assert page.evaluate(PLACE)[0] > 400

@@ -6,7 +6,7 @@ import { readDocument } from "../../../src/simulearn/studio/page/document/docume
 import { moveJoints, mirror, removeParts, rotate, scale, setFixed } from "../../../src/simulearn/studio/page/document/edit.js";
 import * as goals from "../../../src/simulearn/studio/page/document/goals.js";
 import { emptyHistory, record } from "../../../src/simulearn/studio/page/document/history.js";
-import { addSurface, withSurface } from "../../../src/simulearn/studio/page/document/surfaces.js";
+import { addSurface, keepingSurfaces, withSurface } from "../../../src/simulearn/studio/page/document/surfaces.js";
 import { taskFile, taskOf } from "../../../src/simulearn/studio/page/document/task.js";
 import { readCopy, writeCopy } from "../../../src/simulearn/studio/page/service/copies.js";
 import { cellOf } from "../../../src/simulearn/studio/page/shape/net.js";
@@ -39,6 +39,16 @@ test("a surface is a goal of all joints, and goes with its last goal", () => {
   const none = goals.removeGoal(one, 0);
   assert.deepEqual([none.goals, none.surfaces, none.pose], [[], [], "fixed"]);
   assert.equal(addSurface({ ...document, surfaces: Array(4).fill(document.surfaces[0]) }, "fifth", MESH).surfaces.length, 4);
+});
+
+test("another grid keeps the goals that any grid can have, unless it has its own", () => {
+  const before = { ...withOthers(), pose: "free" };
+  const kept = keepingSurfaces(before, square());
+  assert.deepEqual([kept.goals, kept.surfaces, kept.pose], [[before.goals[0]], before.surfaces, "free"]);
+  const own = square({ goals: [{ vertex: ["joint", 1, "centre"] }] });
+  assert.equal(keepingSurfaces(before, own), own);
+  const plain = square();
+  assert.equal(keepingSurfaces(own, plain), plain);
 });
 
 test("what a goal on a surface says can be changed, and nonsense changes nothing", () => {

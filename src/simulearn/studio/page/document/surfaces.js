@@ -47,6 +47,19 @@ export function withoutUnused(document) {
   return { ...document, surfaces, pose };
 }
 
+/** Return whether a goal is about all joints or beams, of whatever grid. */
+export function isOfAll(goal) {
+  return kindOf(goal) === "surface" && typeof goal.vertices === "string";
+}
+
+/** Return a design without goals that takes the place of another, with those of that one that any grid can
+ * have: who has a surface tries several grids. */
+export function keepingSurfaces(before, document) {
+  const goals = before.goals.filter(isOfAll);
+  if (goals.length === 0 || document.goals.length > 0) return document;
+  return withoutUnused({ ...document, goals, surfaces: before.surfaces, pose: before.pose });
+}
+
 /** Return {low, high}, the corners of the box around points. */
 export function boxOf(points) {
   const low = [Infinity, Infinity, Infinity];

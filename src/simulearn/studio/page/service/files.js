@@ -2,8 +2,9 @@
 // exporting, links.
 
 import { emptyDocument, readDocument, sameGrid, sameMaterials, samePrinter } from "../document/document.js";
-import { encode } from "../document/link.js";
 import { removeGoal } from "../document/goals.js";
+import { encode } from "../document/link.js";
+import { keepingSurfaces } from "../document/surfaces.js";
 import { taskFile } from "../document/task.js";
 import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
@@ -65,7 +66,8 @@ export async function open(file, options = {}, replaces = null) {
   if (turn !== openings) return null;
   if (found.surface) return takeSurface(file, options, found, replaces);
   const { drawing, messages = [] } = found;
-  place(document, t("common.didOpen", { file: file.name }));
+  const whole = found.kind === "document" || found.kind === "task"; // with its own goals, or none
+  place(whole ? document : keepingSurfaces(state.document, document), t("common.didOpen", { file: file.name }));
   if (drawing) showDrawing(file, options, found);
   else if (messages.length) {
     const title = t("common.openNotes", { file: file.name });
