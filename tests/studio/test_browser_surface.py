@@ -41,6 +41,20 @@ def mean(panel):
     return float(value.inner_text().removesuffix(" mm"))
 
 
+def assert_another_unit(page, panel):
+    """The unit is changed, and that is taken back."""
+    expect(do.fact(panel, "Size")).to_have_text("160 × 160 × 18.6 mm")
+    do.button(panel, "Unit: Change…").click()
+    dialog = page.get_by_role("dialog", name="How large is hood.stl?")
+    expect(dialog.get_by_role("radio", name="Millimetres")).to_be_checked()
+    dialog.get_by_role("radio", name="Inches").check()
+    do.button(dialog, "Take this size").click()
+    expect(do.fact(panel, "Size")).to_have_text("4064 × 4064 × 472 mm")
+    expect(do.fact(panel, "Unit")).to_have_text("Inches, as chosen")
+    do.button(page, "Undo: unit of hood: in").click()
+    expect(do.fact(panel, "Unit")).to_have_text("Millimetres: the file does not say")
+
+
 def test_a_dropped_surface_becomes_a_goal_that_tells_itself_and_can_be_changed(page, studio, axe):
     do.opened(page, studio.url)
     before = do.document(page)
@@ -58,6 +72,7 @@ def test_a_dropped_surface_becomes_a_goal_that_tells_itself_and_can_be_changed(p
     expect(do.shape(page).locator(".note-ring.note-collision")).to_have_count(1)
     assert axe(page) == []
     hole.blur()
+    assert_another_unit(page, panel)
     expect(do.shape(page).locator(".note-ring.note-collision")).to_have_count(0)
     # Only one joint, which may not slide and has a tolerance.
     do.joint(page, 2).click()
@@ -83,11 +98,13 @@ def test_a_dropped_surface_becomes_a_goal_that_tells_itself_and_can_be_changed(p
     assert do.document(page) == before
 
 
-def test_a_surface_elsewhere_is_searched_for_and_saved_as_a_task(page, studio, tmp_path):
+def test_a_surface_elsewhere_is_searched_for_and_saved_as_a_task(page, studio, tmp_path, forgiven):
+    forgiven.append("status of 422")  # the server asks what it is
     do.opened(page, studio.url)
     far = sheet(40)
     far.apply_translation([500, 0, 100])
-    drop(page, "roof.ply", exported(far, "ply"))
+    drop(page, "roof.obj", exported(far, "obj") + b"\nl 1 41\n")
+    do.button(page, "A surface to lie on").click()
     panel = goals(page)
     expect(page.get_by_text("lies elsewhere than the grid")).to_be_visible()
     expect(panel.get_by_label("The shape may be placed anywhere")).to_be_checked()
