@@ -13,11 +13,12 @@ import pytest
 from modules import RING, command, here, pretended, ring
 from PIL import Image
 
-from simulearn.assembly import read_assembly
+from simulearn.assembly import read_assembly, simulate_assembly
 from simulearn.dataset import cluster_workers
 from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.fabricate.bill import bill_of, bill_text
 from simulearn.grid import read_grid
+from simulearn.simulate import engine
 from simulearn.tile import Settings, between, from_chart, heights, tile
 from simulearn.tile.pieces import assembled, pieces, tiling_figures
 from simulearn.tile.searching import ModuleAnswer
@@ -48,7 +49,22 @@ def test_its_parts_are_where_its_joints_are(tiled):
     assert len(together.joined) == 10
     place = together.parts[3].place
     joints = place(np.array(tiled.answers[0].joints))
-    np.testing.assert_allclose(joints[tiled.members[3].order], tiled.fit.versions[3], atol=1e-9)
+    np.testing.assert_allclose(joints[tiled.members[3].order], tiled.fit.joints[3], atol=1e-9)
+
+
+def test_neighbours_lie_side_by_side(tiled):
+    assert tiled.settings.inset_mm == 3.6
+    together = assembled(tiled)
+    assert together.joined_mm < 1.5
+    shapes = simulate_assembly(together, engine("learned"))
+    assert shapes.collisions == ()
+    middles = tiled.beams
+    beams = tiled.tiling.lattice.beams
+    sides = [b for b in range(4) if abs(np.diff(tiled.tiling.lattice.joints[beams[b], 0])) < 0.1]
+    apart = np.linalg.norm(
+        middles[:, sides, None] - np.roll(middles, -1, 0)[:, None, sides], axis=-1
+    )
+    assert 6.0 < apart.min() < 8.4
 
 
 def test_a_bill_counts_copies(tiled):

@@ -59,6 +59,16 @@ def tile_(
     rounds: Annotated[
         int, typer.Option(min=0, help="In which borders are brought together, at most.")
     ] = 3,
+    inset: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=50,
+            metavar="MM",
+            help="How far modules keep from their borders; by default half the width of a beam, "
+            "so that beams of neighbours lie side by side.",
+        ),
+    ] = None,
     alike: Annotated[
         float,
         typer.Option(min=0.0, metavar="MM", help="Modules that differ by less are one design."),
@@ -103,6 +113,7 @@ def tile_(
     settings = Settings(
         alike_mm=alike,
         gap_mm=gap,
+        inset_mm=inset,
         rounds=rounds,
         seconds=seconds,
         engine=engine,
