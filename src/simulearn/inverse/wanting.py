@@ -153,7 +153,7 @@ def goals_of(said: Sequence[Goal], grid: Grid, shapes: Shapes, free: bool = Fals
     """
     parts: list[Part] = []
     for k, goal in enumerate(said):
-        _agree(goal, f"goals[{k}]")
+        agree(goal, f"goals[{k}]")
         parts += _parts(goal, f"goals[{k}]", grid, shapes)
     if not sum(float(part.weights.sum()) for part in parts) > 0:
         raise InputError("goals all have the weight 0; at least one counts", "task", "goals")
@@ -167,8 +167,12 @@ def rows_of(goal: Goal, grid: Grid) -> int:
     return len(goal.faces) if goal.direction is not None and goal.faces else 1
 
 
-def _agree(goal: Goal, where: str) -> None:
-    """Raise InputError where the keys of a goal do not go together."""
+def agree(goal: Goal, where: str) -> None:
+    """Make sure that the keys of a goal go together.
+
+    Raises:
+        InputError: they do not; one line says which.
+    """
     wanted = [key for key in OF if getattr(goal, key) is not None]
     if len(wanted) != 1:
         what = f"wants {' and '.join(wanted)}" if wanted else "says not what is wanted"

@@ -13,7 +13,8 @@ from simulearn.errors import InputError
 from simulearn.fabricate.profiles import MOST_TEXT
 from simulearn.grid.arrays import shown
 from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
-from simulearn.inverse.goalfile import OBJECT, OF, WORDS, CurveFile, Goal
+from simulearn.inverse.goalfile import OBJECT, WORDS, CurveFile, Goal
+from simulearn.inverse.wanting import agree
 from simulearn.material import materials_of
 from simulearn.material.material import is_name
 from simulearn.studio.bodies import OwnMaterials
@@ -155,14 +156,10 @@ def _check_goals(document: DocumentFile) -> None:
     names = [surface.name for surface in document.surfaces]
     for k, goal in enumerate(document.goals):
         where = f"goals[{k}]"
-        if not goal.wanted:
-            text = f"{where} wants nothing, or several things; it has one of {', '.join(OF)}"
-            raise InputError(text, "document", where)
-        whose = [key for key in WHOSE if getattr(goal, key)]
-        allowed = OF[goal.wanted]
-        if len(whose) != bool(allowed) or (whose and whose[0] not in allowed):
-            needed = " or ".join(allowed) or "no vertices and no faces"
-            raise InputError(f"{where} has, with {goal.wanted}, {needed}", "document", where)
+        try:
+            agree(goal, where)
+        except InputError as error:
+            raise InputError(str(error), "document", error.where) from error
         if isinstance(goal.curve, CurveFile) and goal.curve.points is None:
             text = f"{where}.curve has points; files are not read here"
             raise InputError(text, "document", f"{where}.curve")

@@ -3,8 +3,11 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { readDocument } from "../../../src/simulearn/studio/page/document/document.js";
-import { moveJoints, mirror, removeParts, rotate, scale, setFixed } from "../../../src/simulearn/studio/page/document/edit.js";
+import {
+  moveJoints, mirror, removeParts, rotate, scale, setFixed,
+} from "../../../src/simulearn/studio/page/document/edit.js";
 import * as goals from "../../../src/simulearn/studio/page/document/goals.js";
+import { kindOf } from "../../../src/simulearn/studio/page/document/kinds.js";
 import { emptyHistory, record } from "../../../src/simulearn/studio/page/document/history.js";
 import { addSurface, keepingSurfaces, withSurface } from "../../../src/simulearn/studio/page/document/surfaces.js";
 import { taskFile, taskOf } from "../../../src/simulearn/studio/page/document/task.js";
@@ -38,7 +41,8 @@ test("a surface is a goal of all joints, and goes with its last goal", () => {
   assert.deepEqual([one.surfaces.map(({ name }) => name), one.pose], [["hood 2"], "free"]);
   const none = goals.removeGoal(one, 0);
   assert.deepEqual([none.goals, none.surfaces, none.pose], [[], [], "fixed"]);
-  assert.equal(addSurface({ ...document, surfaces: Array(4).fill(document.surfaces[0]) }, "fifth", MESH).surfaces.length, 4);
+  const full = { ...document, surfaces: Array(4).fill(document.surfaces[0]) };
+  assert.equal(addSurface(full, "fifth", MESH), full);
 });
 
 test("another grid keeps the goals that any grid can have, unless it has its own", () => {
@@ -98,8 +102,7 @@ test("what is no goal or surface is refused with its place", () => {
 test("goals follow their parts, and go with what they are about", () => {
   const document = withOthers();
   const less = removeParts(document, { joints: [1], beams: [] });
-  const kinds = less.goals.map((goal) => Object.keys(goal).find((key) => ["surface", "direction", "plane", "curve", "away_from", "distance", "angle"].includes(key)));
-  assert.deepEqual(kinds, ["surface", "direction", "plane", "curve", "away_from"]);
+  assert.deepEqual(less.goals.map(kindOf), ["surface", "direction", "plane", "curve", "away_from"]);
   assert.deepEqual(less.goals[1].face, ["joint", 1, "top"]);
   assert.deepEqual(less.goals[3].vertex, ["joint", 2, "centre"]);
   assert.equal(less.surfaces, document.surfaces);
@@ -150,13 +153,15 @@ test("a copy holds the triangles once, however many steps share them", () => {
 });
 
 test("another unit gives a surface other triangles and leaves its goals", () => {
-  const inches = withSurface(onSurface(), "hood", { vertices: MESH.vertices.map((v) => v.map((x) => 25.4 * x)), faces: MESH.faces });
+  const vertices = MESH.vertices.map((vertex) => vertex.map((x) => 25.4 * x));
+  const inches = withSurface(onSurface(), "hood", { ...MESH, vertices });
   near(inches.surfaces[0].vertices[2][0], 1524);
   assert.equal(inches.goals.length, 1);
 });
 
 test("a shape is placed where it is compared, and its net has round distances", () => {
-  const result = { joints: Float32Array.of(1, 2, 3), beams: Float32Array.of(0, 0, 1), collisions: [{ place: [1, 0, 0] }], rise_mm: 4 };
+  const [joints, beams] = [Float32Array.of(1, 2, 3), Float32Array.of(0, 0, 1)];
+  const result = { joints, beams, collisions: [{ place: [1, 0, 0] }], rise_mm: 4 };
   const placed = placedResult(result, { turn: [[0, -1, 0], [1, 0, 0], [0, 0, 1]], shift: [10, 0, 0] });
   assert.deepEqual([...placed.joints], [8, 1, 3]);
   assert.deepEqual([...placed.beams], [10, 0, 1]);

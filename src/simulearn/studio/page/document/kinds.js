@@ -69,7 +69,9 @@ export function readGoal(data, where, grid, surfaces, check) {
   const goal = { ...Object.fromEntries(said), weight: data.weight ?? 1 };
   for (const key of ["vertex", "face"]) if (key in goal) goal[key] = named(goal[key]);
   for (const key of ["vertices", "faces"]) if (Array.isArray(goal[key])) goal[key] = goal[key].map(named);
-  for (const key of WHOSE) if (key in goal) check(namesParts(goal, key, grid), `${where}.${key} is ${brief(goal[key])}; the grid has no such ${key}`);
+  for (const key of WHOSE)
+    if (key in goal)
+      check(namesParts(goal, key, grid), `${where}.${key} is ${brief(goal[key])}; the grid has no such ${key}`);
   const kind = kindOf(goal);
   const kinds = Object.keys(KINDS).join(", ");
   check(kind !== null, `${where} wants nothing, or several things; a goal has one of ${kinds}`);
@@ -81,7 +83,8 @@ export function readGoal(data, where, grid, surfaces, check) {
     if (key in goal) check(holds(goal[key]), `${where}.${key} is ${brief(goal[key])}; ${text}`);
   const names = surfaces.map(({ name }) => name);
   for (const [key, known] of [["surface", names], ["away_from", [...names, ITSELF]]])
-    if (key in goal) check(known.includes(goal[key]), `${where}.${key} is ${brief(goal[key])}; the document has no such surface`);
+    if (key in goal)
+      check(known.includes(goal[key]), `${where}.${key} is ${brief(goal[key])}; the document has no such surface`);
   return goal;
 }
 

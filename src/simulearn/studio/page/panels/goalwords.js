@@ -36,7 +36,9 @@ const WORDS = {
   distance: ({ vertices: [a, b], distance }) => t("surface.distance", {
     a: vertexWords(a), b: vertexWords(b), mm: mm(distance),
   }),
-  angle: ({ faces: [a, b], angle }) => t("surface.angle", { a: faceWords(a), b: faceWords(b), degrees: number(angle) }),
+  angle: ({ faces: [a, b], angle }) => t("surface.angle", {
+    a: faceWords(a), b: faceWords(b), degrees: number(angle),
+  }),
   away_from: ({ away_from: body, clearance = 0 }) => t("surface.away", {
     body: body === ITSELF ? t("surface.itself") : body, mm: mm(clearance),
   }),

@@ -158,7 +158,8 @@ export async function copyLink() {
 
 /** Return a document without the goals that have surfaces. */
 function plain(document) {
-  const named = ({ surface, away_from: body }) => document.surfaces.some(({ name }) => [surface, body].includes(name));
+  const names = document.surfaces.map(({ name }) => name);
+  const named = ({ surface, away_from: body }) => names.includes(surface) || names.includes(body);
   return document.goals.reduceRight((before, goal, k) => (named(goal) ? removeGoal(before, k) : before), document);
 }
 
