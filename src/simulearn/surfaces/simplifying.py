@@ -19,7 +19,6 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 FEW = 1e-3  # of the greatest curvature, below which a direction has none and the mean place is kept
-HALVINGS = 9  # of the range in which the number of cells is looked for
 
 
 def simplified(surface: Surface, most: int) -> tuple[Surface, float]:
@@ -35,20 +34,19 @@ def simplified(surface: Surface, most: int) -> tuple[Surface, float]:
     if len(surface.faces) <= most:
         return surface, 0.0
     low, high = 1, 4 * round(float(np.sqrt(most)))  # cells along the longest side
-    best: tuple[Array, Indices] | None = None
-    for _ in range(HALVINGS):
+    best: tuple[Indices, Indices] | None = None
+    while low < high or best is None:
         cells = (low + high + 1) // 2
         tried = _clustered(surface, cells)
-        if len(tried[1]) <= most:
+        if 0 < len(tried[1]) <= most:
             low, best = cells, tried
+        elif low == high:
+            text = f"has {len(surface.faces):,} triangles, and nothing is left of it with {most:,}"
+            raise InputError(text, "surface-many", "surface")
         else:
             high = cells - 1
-        if low >= high:
-            break
-    if best is None or not len(best[1]):
-        text = f"has {len(surface.faces):,} triangles, and nothing is left of it with {most:,}"
-        raise InputError(text, "surface-many", "surface")
-    vertices, faces, _ = mended(*best)
+    cell, faces = best
+    vertices, faces, _ = mended(_middles(surface, cell, low), faces)
     made = replace(surface, vertices=vertices, faces=faces)
     apart = max(
         float(made.distance(surface.vertices).max()), float(surface.distance(vertices).max())
@@ -56,39 +54,51 @@ def simplified(surface: Surface, most: int) -> tuple[Surface, float]:
     return made, apart
 
 
-def _clustered(surface: Surface, cells: int) -> tuple[Array, Indices]:
-    """Return vertices and faces, with so many cells along the longest side."""
-    vertices, faces = surface.vertices, surface.faces
-    low, high = surface.box
-    size = float((high - low).max()) / cells
-    place = np.floor((vertices - low) / size).astype(np.int64)
+def _clustered(surface: Surface, cells: int) -> tuple[Indices, Indices]:
+    """Return the cell (V,) of each vertex, and the faces (T, 3) among cells.
+
+    Args:
+        surface: of V vertices.
+        cells: along the longest side.
+    """
+    place = np.floor((surface.vertices - surface.box[0]) / _size(surface, cells)).astype(np.int64)
     _, cell = np.unique(place @ [1, 1 << 20, 1 << 40], return_inverse=True)
-    count = int(cell.max()) + 1
-    sums = np.stack([np.bincount(cell, x, count) for x in vertices.T], axis=1)
-    mean: Array = sums / np.bincount(cell, minlength=count)[:, None]
-    points = mean + _towards_planes(surface, cell, mean, size)
-    kept = cell[faces]
+    kept = cell[surface.faces]
     a, b, c = kept.T
     kept = kept[(a != b) & (b != c) & (c != a)]
-    _, first = np.unique(np.sort(kept, axis=1), axis=0, return_index=True)
-    return points, kept[np.sort(first)]
+    count = int(cell.max()) + 1
+    low, middle, high = np.sort(kept, axis=1).T
+    _, first = np.unique((low * count + middle) * count + high, return_index=True)
+    return cell, kept[np.sort(first)]
 
 
-def _towards_planes(surface: Surface, cell: Indices, mean: Array, size: float) -> Array:
-    """Return by how much (C, 3) the one vertex of each cell is away from the mean of all."""
+def _size(surface: Surface, cells: int) -> float:
+    return float(np.diff(surface.box, axis=0).max()) / cells
+
+
+def _middles(surface: Surface, cell: Indices, cells: int) -> Array:
+    """Return the one vertex (C, 3) of each cell, nearest to the planes that meet there."""
+    count = int(cell.max()) + 1
+
+    def total(at: Indices, values: Array) -> Array:
+        flat = values.reshape(len(values), -1).T
+        sums = np.asarray([np.bincount(at, x, count) for x in flat], np.float64)
+        return sums.T.reshape(count, *values.shape[1:])
+
+    mean = total(cell, surface.vertices) / np.bincount(cell)[:, None]
     normals, anchors, corners = _planes(surface)
-    A = np.zeros((len(mean), 3, 3))
-    b = np.zeros((len(mean), 3))
+    A, b = np.zeros((count, 3, 3)), np.zeros((count, 3))
     for corner in corners.T:
         at = cell[corner]
         off = np.einsum("tk,tk->t", normals, anchors - mean[at])
-        np.add.at(A, at, normals[:, :, None] * normals[:, None, :])
-        np.add.at(b, at, normals * off[:, None])
+        A += total(at, normals[:, :, None] * normals[:, None, :])
+        b += total(at, normals * off[:, None])
     values, axes = np.linalg.eigh(A)
     steep = values > FEW * values[:, -1:]
     share = np.where(steep, 1 / np.where(steep, values, 1.0), 0.0)
     by: Array = np.einsum("cij,cj,ckj,ck->ci", axes, share, axes, b)
-    return np.where(np.abs(by).max(axis=1, keepdims=True) < size, by, 0.0)
+    near = np.abs(by).max(axis=1, keepdims=True) < _size(surface, cells)
+    return mean + np.where(near, by, 0.0)
 
 
 def _planes(surface: Surface) -> tuple[Array, Array, Indices]:

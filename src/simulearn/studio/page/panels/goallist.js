@@ -46,7 +46,7 @@ function pointFields({ vertex, target, weight }, k) {
 /** What can be said and changed of a goal, by its kind. */
 function body(goal, k) {
   if (isPoint(goal)) return [pointFields(goal, k), details(goal)];
-  if (kindOf(goal) !== "surface") return [details(goal), h("p", { class: "note" }, t("surface.other"))];
+  if (kindOf(goal) !== "surface") return [details(goal)];
   const surface = state.document.surfaces.find(({ name }) => name === goal.surface);
   return [surfaceFields(goal, k), h(SurfaceFacts, { key: "facts", surface })];
 }
@@ -67,7 +67,7 @@ function goal(one, k, facts) {
     hover();
     if (point && !selected) select({ goal: k });
   };
-  const label = [h("span", { class: ["goal-mark", kindOf(one)], "aria-hidden": "true" }), h("span", name)];
+  const label = [h("span", { class: ["goal-mark", { sheet: kindOf(one) === "surface" }], "aria-hidden": "true" }), h("span", name)];
   return h("li", {
     key: point ? one.vertex.join() : `${kindOf(one)} ${k}`,
     class: ["goal", { selected, hovered: state.hover?.goal === k }],
@@ -155,6 +155,8 @@ export const GoalList = {
         pose(),
         goals.some(isPoint) && h("p", { class: "goals-title" }, t("panels.target")),
         h("ol", { class: "goals" }, goals.map((one, k) => goal(one, k, found.value.each[k]))),
+        !goals.every((one) => isPoint(one) || kindOf(one) === "surface")
+          && h("p", { class: "note" }, t("surface.other")),
         h(Adding),
       ]);
     };

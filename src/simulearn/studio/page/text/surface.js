@@ -74,7 +74,7 @@ export const surface = {
     course: "Course of beam {b}",
     section: "Beam {b}, {section}",
     sectionTop: "Top of beam {b}, {section}",
-    other: "From a task file; it can be removed here and not changed.",
+    other: "Other goals come from a task file; they can be removed here and not changed.",
     // Search
     prints: "Prints that meet all goals",
     // Files
@@ -155,7 +155,7 @@ export const surface = {
     course: "Verlauf von Stab {b}",
     section: "Stab {b}, {section}",
     sectionTop: "Oberseite von Stab {b}, {section}",
-    other: "Aus einer Aufgabendatei; es lässt sich hier entfernen, aber nicht ändern.",
+    other: "Andere Ziele stammen aus einer Aufgabendatei; sie lassen sich hier entfernen, aber nicht ändern.",
     prints: "Drucke, die alle Ziele erreichen",
     saveTask: "Als Aufgabe speichern",
     taskMaterial: "Die Aufgabe nennt das Material {name}. Auch das ist zu speichern und mit --material anzugeben.",
