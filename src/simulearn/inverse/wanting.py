@@ -24,7 +24,7 @@ from simulearn.surfaces import (
     Curve,
     Plane,
     Surface,
-    mended,
+    mended_surface,
     read_curve,
     read_surface,
     surface_of_heights,
@@ -102,10 +102,9 @@ class Shapes:
                 raise InputError(text, "task", where)
             x, y = (said.x[0], said.x[1]), (said.y[0], said.y[1])
             return surface_of_heights(said.heights, x, y, said.step)
-        vertices, faces, messages = mended(
+        return mended_surface(
             np.array(said.vertices, float), np.array(said.faces or [], np.int64).reshape(-1, 3)
         )
-        return Surface(vertices, faces, tuple(messages))
 
     def _curve(self, said: CurveFile, where: str) -> Curve:
         if said.file is not None:
@@ -160,7 +159,7 @@ def goals_of(said: Sequence[Goal], grid: Grid, shapes: Shapes, free: bool = Fals
     """
     parts: list[Part] = []
     for k, goal in enumerate(said):
-        _agree(goal, f"goals[{k}]")
+        agree(goal, f"goals[{k}]")
         parts += _parts(goal, f"goals[{k}]", grid, shapes)
     if not sum(float(part.weights.sum()) for part in parts) > 0:
         raise InputError("goals all have the weight 0; at least one counts", "task", "goals")
@@ -174,8 +173,12 @@ def rows_of(goal: Goal, grid: Grid) -> int:
     return len(goal.faces) if goal.direction is not None and goal.faces else 1
 
 
-def _agree(goal: Goal, where: str) -> None:
-    """Raise InputError where the keys of a goal do not go together."""
+def agree(goal: Goal, where: str) -> None:
+    """Make sure that the keys of a goal go together.
+
+    Raises:
+        InputError: they do not; one line says which.
+    """
     wanted = [key for key in OF if getattr(goal, key) is not None]
     if len(wanted) != 1:
         what = f"wants {' and '.join(wanted)}" if wanted else "says not what is wanted"

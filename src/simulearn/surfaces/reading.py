@@ -19,13 +19,14 @@ from simulearn.drawings.units import unit_named
 from simulearn.errors import InputError, Message
 from simulearn.surfaces.chains import chained
 from simulearn.surfaces.curve import Curve
-from simulearn.surfaces.mending import mended
+from simulearn.surfaces.mending import mended_surface
 from simulearn.surfaces.meshfile import FORMATS, contents, loaded
 from simulearn.surfaces.surface import Surface
 
 METRE = 1000.0  # mm
 Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # turns +y up into +z up
-READ = " ".join([*FORMATS, ".glb", ".3dm"])
+KINDS = (*FORMATS.values(), "glb", "3dm")
+READ = " ".join(f".{kind}" for kind in KINDS)
 USUAL = (5.0, 5000.0)  # mm, across what people mean
 TABLES = (".csv", ".tsv", ".txt")
 CHORD = 0.01  # mm, distance between a curve and its chords
@@ -43,14 +44,27 @@ def read_surface(path: Path | str, unit: str | None = None) -> Surface:
         InputError: the file cannot be read, is damaged or holds no triangle; one line says why.
     """
     path = Path(path)
-    mm = None if unit is None else unit_named(unit, "as given").mm
+    kind = path.suffix.lower().removeprefix(".")
     data = contents(path, "surface")
-    ending = path.suffix.lower()
+    if kind not in KINDS:
+        raise InputError(f"{path}: the ending is not one of {READ}", "surface-format", str(path))
+    return surface_in(data, kind, path, unit)
+
+
+def surface_in(data: bytes, kind: str, path: Path, unit: str | None = None) -> Surface:
+    """Return the surface in the contents of a file, as `read_surface` does.
+
+    Args:
+        data: the contents.
+        kind: one of `KINDS`.
+        path: of the file, for messages.
+        unit: of the file.
+    """
+    mm = None if unit is None else unit_named(unit, "as given").mm
     says: list[Message] = []
-    if ending == ".3dm":
+    if kind == "3dm":
         vertices, faces, own, says = _of_rhino(data, path)
-    elif ending in FORMATS or ending == ".glb":
-        kind = FORMATS.get(ending, "glb")
+    else:
         shape = loaded(data, kind, str(path), "surface")
         if shape is None or not len(getattr(shape, "faces", ())):
             what = (
@@ -62,19 +76,16 @@ def read_surface(path: Path | str, unit: str | None = None) -> Surface:
         own = METRE if kind == "glb" else None
         if kind == "glb":
             vertices = vertices @ Z_UP.T
-    else:
-        raise InputError(f"{path}: the ending is not one of {READ}", "surface-format", str(path))
     try:
-        vertices, faces, mends = mended(vertices, faces)
+        surface = mended_surface(vertices, faces)
     except InputError as error:
         raise InputError(f"{path}: {error}", error.code, str(path)) from error
-    scale = mm or own or 1.0
-    surface = Surface(vertices, faces).scaled(scale)
+    surface = surface.scaled(mm or own or 1.0)
     if mm is None:
         says += _odd(surface.size, "surface", own)
     named = tuple(
         replace(one, where=str(path), message=f"{path.name}: {one.message}")
-        for one in (*says, *mends)
+        for one in (*says, *surface.warnings)
     )
     return replace(surface, warnings=named)
 

@@ -4,6 +4,7 @@
 import { ref } from "/libraries/vue.js";
 import { readGrid, sameGrid, withGrid } from "../document/document.js";
 import { allMends } from "../document/imported.js";
+import { isOfAll } from "../document/surfaces.js";
 import { edit, select, state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { openFile } from "./api.js";
@@ -26,7 +27,7 @@ export const refusals = ref(0);
  */
 export function drawingOf(document) {
   const found = changes.value >= 0 ? known.get(document.grid) : null; // asks for `changes`, which is watched
-  return found && document.goals.length === 0 ? found : null;
+  return found && document.goals.every(isOfAll) ? found : null;
 }
 
 /** Show what is to be told of the drawing that has become the document: `found` is the server's answer. */
