@@ -44,6 +44,8 @@ def read_surface(path: Path | str, unit: str | None = None) -> Surface:
         InputError: the file cannot be read, is damaged or holds no triangle; one line says why.
     """
     path = Path(path)
+    if unit is not None:
+        unit_named(unit, "as given")  # before a file is looked for
     kind = path.suffix.lower().removeprefix(".")
     data = contents(path, "surface")
     if kind not in KINDS:
