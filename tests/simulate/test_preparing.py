@@ -26,15 +26,20 @@ def model(monkeypatch):
     monkeypatch.setattr(preparing, "_model", lambda: own)
     monkeypatch.setattr(preparing, "_small", lambda: [0])
     monkeypatch.setattr(preparing, "is_kept", lambda kernel: False)
-    preparing.prepare.cache_clear()
+    preparing._prepare.cache_clear()
     yield own
-    preparing.prepare.cache_clear()
+    preparing._prepare.cache_clear()
+
+
+def test_other_models_need_no_kernels(model):
+    preparing.prepare(model)
+    assert model.rollouts == 0
 
 
 def test_nothing_is_begun_where_all_is_kept(model, monkeypatch):
     monkeypatch.setattr(preparing, "is_kept", lambda kernel: True)
     monkeypatch.setattr(preparing, "_begun", lambda: pytest.fail("begun"))
-    preparing.prepare()
+    preparing._prepare()
     assert model.rollouts == 0
 
 
@@ -43,8 +48,8 @@ def test_it_waits_for_the_other_process(model, monkeypatch, tmp_path):
     program = f"import time, pathlib; time.sleep(0.3); pathlib.Path({str(mark)!r}).touch()"
     other = subprocess.Popen([sys.executable, "-c", program])
     monkeypatch.setattr(preparing, "_begun", lambda: other)
-    preparing.prepare()
-    preparing.prepare()
+    preparing._prepare()
+    preparing._prepare()
     assert model.rollouts == 1
     assert mark.exists()
 
@@ -63,7 +68,7 @@ def test_an_interrupt_ends_the_other_process(model, monkeypatch):
     first, real = [waiting], other.wait
     monkeypatch.setattr(other, "wait", lambda *given: first.pop()(*given) if first else real())
     with pytest.raises(KeyboardInterrupt):
-        preparing.prepare()
+        preparing._prepare()
     assert other.poll() is not None
 
 
@@ -73,7 +78,7 @@ def test_one_process_does_where_there_is_no_other(model, monkeypatch):
 
     monkeypatch.setattr(preparing, "cores", lambda: 2)
     monkeypatch.setattr(preparing.subprocess, "Popen", refused)
-    preparing.prepare()
+    preparing._prepare()
     assert model.rollouts == 1
 
 

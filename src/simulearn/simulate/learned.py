@@ -100,7 +100,7 @@ class Learned:
 
     def warm(self) -> None:
         """Compile what the first simulation would wait for, of one design and of many."""
-        prepare()
+        prepare(self.bundle.model)
         small = make("flat", (1, 1), 50.0)
         for count in (1, 4):
             designs = designs_of([small] * count, self.material)
@@ -110,7 +110,7 @@ class Learned:
 
     def _answers(self, batch: Sequence[tuple[int, Checked]]) -> Iterator[tuple[int, Outcome]]:
         """Yield the outcomes of designs of one topology."""
-        prepare()
+        prepare(self.bundle.model)
         begun = time.perf_counter()
         designs = designs_of([one.grid for _, one in batch], batch[0][1].material)
         frames = self.bundle.model.rollout(designs)

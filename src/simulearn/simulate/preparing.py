@@ -17,7 +17,7 @@ from simulearn.collisions import find_all
 from simulearn.files import cores
 from simulearn.grid import make
 from simulearn.learn.common.bundle import bundle_of
-from simulearn.learn.common.model import Designs
+from simulearn.learn.common.model import Designs, Model
 from simulearn.learn.equilibrium.model import Equilibrium
 from simulearn.learn.equilibrium.native import predict, unsolved
 from simulearn.native import is_kept
@@ -26,9 +26,14 @@ from simulearn.simulate.designs import designs_of
 LONGEST = 300.0  # s, after which the other process is not waited for
 
 
+def prepare(model: Model) -> None:
+    """Compile all kernels of a model's predictions that are not kept on disk."""
+    if isinstance(model, Equilibrium):  # others have their own
+        _prepare()
+
+
 @cache
-def prepare() -> None:
-    """Compile all kernels of predictions that are not kept on disk; later calls do nothing."""
+def _prepare() -> None:
     from simulearn.collisions.kernels.pairs import find_pairs  # loads the compiler
     from simulearn.learn.equilibrium.kernels.network import outputs
     from simulearn.mechanics.kernels.path import follow
