@@ -214,7 +214,7 @@ def test_a_wrong_file_is_named_with_its_place(tmp_path):
             read_task(path, paths=True)
 
 
-def test_surfaces_out_of_reach_and_of_another_unit_are_told(tmp_path):
+def test_surfaces_out_of_reach_and_of_another_unit_are_reported(tmp_path):
     from simulearn.inverse.reach import out_of_reach
 
     far = task_from_dict(

@@ -46,7 +46,7 @@ def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, 
     Returns:
         kind (grid, task, result, document or drawing), name, grid, goals, printer (None if the file
         names none), texts of own materials, messages about what was not taken over, and what is to
-        be told of a drawing: format, unit, layers and mends (None for other files).
+        be reported of a drawing: format, unit, layers and mends (None for other files).
 
     Raises:
         InputError: the file holds nothing that can be opened; the message says what and where.
