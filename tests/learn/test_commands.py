@@ -2,6 +2,7 @@
 
 import csv
 import json
+from itertools import product
 
 import pytest
 from PIL import Image
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 from simulearn.cli.program import app
 from simulearn.grid import make, write_grid
 from simulearn.learn.common.bundle import bundle_of, save_bundle
+from simulearn.learn.paper import search
 from simulearn.material import load_material
 from simulearn.material.material import HERE
 
@@ -59,8 +61,9 @@ def test_train_says_what_is_missing(small, tmp_path):
     assert not (tmp_path / "run").exists()
 
 
-def test_search_tries_combinations_and_goes_on(small, tmp_path):
+def test_search_tries_combinations_and_goes_on(small, tmp_path, monkeypatch):
     pytest.importorskip("optuna")
+    monkeypatch.setattr(search, "SHARES", (1.0,))  # one kernel for all runs, and for other tests
     settings = small.model_dump(mode="json")
     settings["phases"] = [{"epochs": 1, "unroll": 10, "batch": 6}]
     config = tmp_path / "run.toml"
@@ -77,6 +80,23 @@ def test_search_tries_combinations_and_goes_on(small, tmp_path):
     lines = (tmp_path / "s" / "search.csv").read_text("utf-8").splitlines()
     assert len(lines) == 3
     assert width(tmp_path / "s" / "search.png") > 1000
+
+
+def test_search_tries_every_combination_once(small, sample, tmp_path, monkeypatch):
+    pytest.importorskip("optuna")
+    tried = []
+
+    def measured(config, data):
+        tried.append((config.phases[0].noise, config.penalty, config.trials))
+        return {"validation_percent": 1.0 + config.penalty, "gap_mm": 0.1}
+
+    monkeypatch.setattr(search, "_measured", measured)
+    figures = search.search(small, sample, tmp_path, 60)
+    sizes = {trials for _, _, trials in tried}
+    assert len(sizes) == len(search.SHARES)
+    assert sorted(tried) == sorted(product(search.NOISE, search.PENALTY, sizes))
+    assert len(figures["runs"]) == 48
+    assert figures["best"]["penalty"] == 0.0
 
 
 def test_evaluate_tells_figures_and_draws(folder, sample_file, tmp_path):
