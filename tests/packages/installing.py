@@ -14,22 +14,6 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 PYTHONS = os.environ.get("SIMULEARN_PYTHONS", sys.executable).split()
 PATIENCE = 300  # s, for one command on a busy machine
-REFUSALS = """
-import contextlib, io, json, sys
-from simulearn.cli import main
-
-codes = []
-for words in json.loads(sys.argv[1]):
-    sys.argv, code = ["simulearn", *words], 0
-    said = io.StringIO()
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(said):
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-    codes.append((code, said.getvalue()))
-print(json.dumps(codes))
-"""
 
 
 class Installed:
@@ -81,14 +65,9 @@ class Installed:
         assert "Traceback" not in done.stderr
         return done.stdout
 
-    def refused(self, *commands: tuple[object, ...]) -> list[str]:
-        """Run commands in one process; return the line with which each must be refused."""
-        words = [[str(word) for word in command] for command in commands]
-        done = self.run("python", "-c", REFUSALS, json.dumps(words))
-        assert done.returncode == 0, done.stderr
-        lines = []
-        for command, (code, said) in zip(commands, json.loads(done.stdout), strict=True):
-            assert code == 1, (command, said)
-            (line,) = said.splitlines()
-            lines.append(line)
-        return lines
+    def refused(self, *words: object) -> str:
+        """Run simulearn, which must refuse with one line, and return the line."""
+        done = self.run("simulearn", *words)
+        assert done.returncode == 1, (words, done.stdout, done.stderr)
+        (line,) = done.stderr.splitlines()
+        return line

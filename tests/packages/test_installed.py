@@ -48,7 +48,8 @@ def test_the_demo_and_every_extra(install, python):
     simulearn = install(python)
     simulearn.write("task.json", TASK)
     demo(simulearn)
-    for line, (command, extra) in zip(simulearn.refused(*MISSING), MISSING.items(), strict=True):
+    for command, extra in MISSING.items():
+        line = simulearn.refused(*command)
         assert line.endswith(f": pip install 'simulearn[{extra}]'"), command
     for extra, check in EXTRAS.items():
         simulearn.extra(extra)
@@ -122,9 +123,7 @@ def train(simulearn):
     modules = "simulearn.learn.run, simulearn.inverse.gradient, simulearn.fea.calculix"
     loaded = simulearn.run("python", "-c", f"import {modules}")
     assert loaded.returncode == 0, loaded.stderr
-    done = simulearn.run("simulearn", "train", "small")
-    assert (done.returncode, done.stderr.count("\n")) == (1, 1)
-    assert "there is no such data set" in done.stderr
+    assert "there is no such data set" in simulearn.refused("train", "small")
 
 
 EXTRAS = {
