@@ -136,7 +136,7 @@ def test_offsets_are_those_of_points():
     assert pair.error(both) == pytest.approx((goals.error(points) + goals.error(points + by)) / 2)
 
 
-def test_directions_are_told_in_degrees_and_mm():
+def test_directions_are_reported_in_degrees_and_mm():
     flat = Goals.together([part(Direction(TOP, np.array([0.6, 0, 0.8])), TOP.vertices)])
     corners = np.array([[-3, -3, 2], [3, -3, 2], [3, 3, 2], [-3, 3, 2.0]])
     assert TOP.direction(corners) == pytest.approx([0, 0, 1])
@@ -147,7 +147,7 @@ def test_directions_are_told_in_degrees_and_mm():
     assert pytest.approx(np.hypot(3.6, 3.6)) == TOP.radius
 
 
-def test_beams_outside_of_a_body_are_free_and_deep_ones_are_told():
+def test_beams_outside_of_a_body_are_free_and_deep_ones_are_reported():
     course = np.array([[-30.0, 0, 0], [0, 0, 0], [30, 0, 0]])
     ball = trimesh.creation.icosphere(4, 10.0)
     clear = Goals.together(

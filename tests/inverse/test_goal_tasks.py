@@ -248,7 +248,7 @@ def test_a_search_writes_over_nothing_that_it_reads(name, tmp_path, run):
     assert (path.read_bytes(), (tmp_path / "shape.3dm").read_bytes()) == before
 
 
-def test_surfaces_out_of_reach_and_of_another_unit_are_told(tmp_path):
+def test_surfaces_out_of_reach_and_of_another_unit_are_reported(tmp_path):
     from simulearn.inverse.reach import out_of_reach
 
     far = task_from_dict(

@@ -41,7 +41,7 @@ def test_a_glb_is_in_metres_with_y_up(tmp_path):
     np.testing.assert_allclose(surface.box, [[-20, -20, 80], [20, 20, 120]], atol=0.1)
 
 
-def test_a_unit_may_be_given_and_an_odd_size_is_told(tmp_path):
+def test_a_unit_may_be_given_and_an_odd_size_is_reported(tmp_path):
     small = BALL.copy()
     small.apply_scale(1e-3)
     path = written(small, tmp_path / "a.stl")
@@ -54,7 +54,7 @@ def test_a_unit_may_be_given_and_an_odd_size_is_told(tmp_path):
         read_surface(path, "parrots")
 
 
-def test_a_broken_mesh_is_mended_and_what_was_done_is_told():
+def test_a_broken_mesh_is_mended_and_what_was_done_is_reported():
     vertices = np.vstack([BALL.vertices, [[np.nan, 0, 0]]])
     faces = BALL.faces.copy()
     faces[::7] = faces[::7, ::-1]
@@ -117,7 +117,7 @@ def test_patches_that_meet_but_for_rounding_are_one():
     assert not messages
 
 
-def test_a_strip_with_one_side_is_told():
+def test_a_strip_with_one_side_is_reported():
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     half = np.stack([np.cos(t / 2) * np.cos(t), np.cos(t / 2) * np.sin(t), np.sin(t / 2)], axis=1)
     middle = 4 * np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)

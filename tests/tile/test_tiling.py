@@ -164,7 +164,7 @@ def test_without_finite_elements_it_is_said(tiled):
     assert [message.code for message in result.warnings] == ["tile-unchecked"]
 
 
-def test_modules_of_a_wrong_size_are_told_with_the_right_one():
+def test_modules_of_a_wrong_size_are_reported_with_the_right_one():
     with pytest.raises(InputError, match=r"beams of 20 to 100 mm are learnt\. Modules of about"):
         tile(ring(3), SMALL, None, here())
     with pytest.raises(InputError, match="is too slow to tile with"):

@@ -53,7 +53,7 @@ ToleranceOption = Annotated[
         min=1e-6,
         metavar="MM",
         help="How far a print may be from goals that say nothing of it: with what probability it "
-        "is nearer is told.",
+        "is nearer is reported.",
     ),
 ]
 ModelOption = Annotated[

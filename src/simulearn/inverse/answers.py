@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 Added = tuple[Check, Probability | None, list[Message]]
 
-PRINTER = "prusa-mk4"  # whose print times are told where no printer is named
+PRINTER = "prusa-mk4"  # whose print times are given where no printer is named
 SLACK = 0.015  # of the dimension, by which another answer may be worse than the best
 FAR = 3.0  # times that, where there are not enough; it is said of them
 OFF = 2.0  # least distances, by which ratios drawn anew stay away from what is there

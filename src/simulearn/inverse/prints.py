@@ -1,6 +1,6 @@
 """What follows a search whose task asks anything of prints: a probability, a robust design.
 
-The probability that a print meets the goals is told of the best design. A robust search then goes
+The probability that a print meets the goals stands with the best design. A robust search then goes
 on from there with a few prints of each design, and what it comes to is taken where more prints of
 it meet the goals, or as many and closer, by prints that the search has not seen.
 """

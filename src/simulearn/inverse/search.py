@@ -102,7 +102,7 @@ def optimize(
         progress: called after each iteration with the step that was done, the best design in it.
         cancel: stops the search within an iteration.
         before: an earlier run, from which to go on.
-        printer: whose print times several answers are told with, or the name of one; a common one
+        printer: whose print times stand with several answers, or the name of one; a common one
             if not given.
 
     Raises:
@@ -145,7 +145,7 @@ class Search:
         self.printer = printer
         self._bounds: dict[bytes, float] = {}
         self._progress = progress
-        self._asked, self._begun = monotonic(), np.inf
+        self._created, self._begun = monotonic(), np.inf
         self.checking = CHECKING * len(task.grid["beams"])
 
     def run(self) -> SearchResult:
@@ -228,7 +228,7 @@ class Search:
             next(self.method(self.problem(space, goals, np.inf), start), None)
         # Reading the model and getting ready count, but the first time on a machine, which takes
         # longer than many searches, no more than half of the time.
-        ready = min(monotonic() - self._asked, self.task.limits.seconds / 2)
+        ready = min(monotonic() - self._created, self.task.limits.seconds / 2)
         self._begun = monotonic() - ready - (self.steps[-1].seconds if before else 0.0)
         if before is None:
             self.note(space, start, 0, 1, 0, "the design to begin with")

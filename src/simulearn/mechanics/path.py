@@ -157,14 +157,12 @@ def grid_of(
         np.zeros((2, many, 9)), np.zeros((2, many)), np.zeros((2, many)), np.zeros(many),
         np.zeros((many, 3)), np.zeros((many, 4, 3)),
     )  # fmt: skip
-    own = [np.ascontiguousarray(x, np.int64) for x in corners]
-    set_geometry(
-        geometry, np.ascontiguousarray(joints, np.float64), layout.ends, *own,
-        p.width, p.thickness,
-    )  # fmt: skip
-    ratio = np.ascontiguousarray(ratio, np.float64)
-    rows = np.ascontiguousarray(np.broadcast_to(section, (many + 1, section.shape[-1])))
-    return Grid(layout, geometry, own[4], ratio, rows, load_of(p))
+    # All are copies: what is read-only has another type, for which kernels are compiled once more.
+    own = [np.array(x, np.int64, order="C") for x in corners]
+    places = np.array(joints, np.float64, order="C")
+    set_geometry(geometry, places, layout.ends, *own, p.width, p.thickness)
+    rows = np.array(np.broadcast_to(section, (many + 1, section.shape[-1])), order="C")
+    return Grid(layout, geometry, own[4], np.array(ratio, np.float64), rows, load_of(p))
 
 
 def schedule_frames(

@@ -115,11 +115,11 @@ def set_sections(three: Array, ratio: float, skew: Array, out: Array) -> None:
             top = cross(axis, flank)
             wide = skew[1, 0] + t * (skew[2 * side, 0] - skew[1, 0])
             oblique = skew[1, 1] + t * (skew[2 * side, 1] - skew[1, 1])
-            side_way = plus((oblique * axis[0], oblique * axis[1], oblique * axis[2]), wide, flank)
+            to_side = plus((oblique * axis[0], oblique * axis[1], oblique * axis[2]), wide, flank)
             high = thick + t * (end_thick - thick)
             row = out[half + (k if side else -k)]
             for i in range(3):
-                row[0, i] = centre[i] - side_way[i] - high * top[i]
-                row[1, i] = centre[i] + side_way[i] - high * top[i]
-                row[2, i] = centre[i] - side_way[i] + high * top[i]
-                row[3, i] = centre[i] + side_way[i] + high * top[i]
+                row[0, i] = centre[i] - to_side[i] - high * top[i]
+                row[1, i] = centre[i] + to_side[i] - high * top[i]
+                row[2, i] = centre[i] - to_side[i] + high * top[i]
+                row[3, i] = centre[i] + to_side[i] + high * top[i]

@@ -88,7 +88,7 @@ def _layers(weights: NetworkWeights, heads: Heads) -> Layers:
         return np.stack([np.asarray(layers[k][part], np.float32) for layers in weights.rounds])
 
     def single(x: Any) -> NDArray[np.float32]:
-        return np.ascontiguousarray(x, np.float32)
+        return np.array(x, np.float32, order="C")  # a copy: read-only arrays have another type
 
     (first, second), (third, last) = weights.encode, weights.decode
     width = len(second[1])

@@ -110,7 +110,7 @@ class DrawingMend(BaseModel):
 
 
 class DrawingFacts(BaseModel):
-    """What is to be told of a drawing of another program."""
+    """What is reported of a drawing of another program."""
 
     format: str
     unit: DrawingUnit

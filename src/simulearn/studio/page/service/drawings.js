@@ -10,7 +10,7 @@ import { t } from "../text/text.js";
 import { openFile } from "./api.js";
 
 const phone = globalThis.matchMedia("(max-width: 599px)"); // as in panels/media.js
-const known = new WeakMap(); // grid -> what is told of the drawing that it came from
+const known = new WeakMap(); // grid -> what is known of the drawing that it came from
 const changes = ref(0); // in `known`
 let numbers = 0;
 let wanted = null; // options for which the drawing is still to be read
@@ -30,7 +30,7 @@ export function drawingOf(document) {
   return found && document.goals.every(isOfAll) ? found : null;
 }
 
-/** Show what is to be told of the drawing that has become the document: `found` is the server's answer. */
+/** Show the report of the drawing that has become the document: `found` is the server's answer. */
 export function showDrawing(file, options, found) {
   remember(file, options, found);
   Object.assign(state, { tab: "design", drawingShown: true });

@@ -101,7 +101,7 @@ function targetItems(result) {
     };
     if (!point) return [marker];
     return [
-      { id: `way-${k}`, kind: "line", a: point, b: target, className },
+      { id: `line-${k}`, kind: "line", a: point, b: target, className },
       { id: `place-${k}`, kind: "dot", at: point, className },
       {
         id: `apart-${k}`, kind: "text", at: target, shift: [0, chosen ? 20 : -16], className,
@@ -115,14 +115,14 @@ function targetItems(result) {
 /** Move target k by keys: arrows in the plane, PageUp and PageDown along z; 1 mm, with shift 10. */
 function nudge(event, k) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const way = {
+  const step = {
     ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0], ArrowUp: [0, 1, 0],
     PageDown: [0, 0, -1], PageUp: [0, 0, 1],
   }[event.key];
   if (event.key === "Enter" || event.key === " ") select({ goal: k });
-  else if (way) {
+  else if (step) {
     const { target } = state.document.goals[k];
-    move(k, target.map((x, axis) => x + way[axis] * (event.shiftKey ? 10 : 1)));
+    move(k, target.map((x, axis) => x + step[axis] * (event.shiftKey ? 10 : 1)));
   } else return;
   event.preventDefault();
   event.stopPropagation();
