@@ -140,6 +140,8 @@ def test_a_strip_with_one_side_is_reported():
         ("a.glb", b"glTF", "is damaged, or no GLB file"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "is damaged|holds"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "has no triangle that can be used"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "has the vertex 0; OBJ counts from 1"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 1 0/3/4\n", "has the vertex 0"),
         ("a.3dm", b"hello", "no Rhino file"),
         ("a.step", b"ISO-10303-21", "the ending is not one of .stl"),
         ("a.stl", b"version https://git-lfs.github.com/spec/v1\n", "pointer of Git LFS"),

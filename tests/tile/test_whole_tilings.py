@@ -13,7 +13,7 @@ SMALL = Settings(rounds=1)
 
 
 def height(x, y):
-    return 12 * np.cos(x / 70) * np.cos(y / 60)
+    return 8 * np.cos(x / 70) * np.cos(y / 60)
 
 
 def lattice(nx, ny, wide, deep):

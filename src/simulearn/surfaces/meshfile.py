@@ -1,5 +1,6 @@
 """Mesh files (STL, OBJ, PLY, GLB) as Trimesh reads them, in one line where it cannot."""
 
+import re
 from codecs import BOM_UTF8
 from io import BytesIO
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 from simulearn.errors import InputError
 from simulearn.files import MOST_BYTES
 
+FROM_ZERO = re.compile(rb"^f(?:[ \t]+[^\s]+)*?[ \t]+0(?:[/\s]|$)", re.MULTILINE)
 FORMATS = {".stl": "stl", ".ply": "ply", ".obj": "obj"}  # without a unit
 
 
@@ -30,6 +32,8 @@ def loaded(data: bytes, ending: str, name: str, code: str) -> Any:
         raise InputError(f"{name}: is a pointer of Git LFS and no {code}; `git lfs pull`", code)
     more: Any = {"skip_materials": True} if ending == "obj" else {}
     data = data.removeprefix(BOM_UTF8)  # Trimesh would take it for a part of the first line
+    if ending == "obj" and FROM_ZERO.search(data):  # Trimesh would take the last vertex
+        raise InputError(f"{name}: a face has the vertex 0; OBJ counts from 1", code, name)
     try:
         shape: Any = trimesh.load(BytesIO(data), file_type=ending, process=False, **more)
         if isinstance(shape, trimesh.Scene):
