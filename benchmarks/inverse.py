@@ -185,8 +185,8 @@ def main() -> None:
 
     report = Report("inverse", "Inverse design")
     report.say(
-        f"{options.tasks} reachable tasks (gradient and cma: the first {options.few}): targets are the "
-        f"nine joint centres of random designs (seed {SEED}) by the fine mesh, the start is a "
+        f"{options.tasks} reachable tasks (gradient and cma: the first {options.few}): targets are "
+        f"the nine joint centres of random designs (seed {SEED}) by the fine mesh, the start is a "
         f"flat grid of {LENGTH:g} mm beams, the engine is the default model, the limit is "
         f"{options.seconds:g} s with all checks. A search that comes to .08 mm stops. Errors are "
         f"means over the nine goals, after the check by the same mesh; wanted are {WANTED:g} mm."

@@ -54,8 +54,8 @@ def opened(
     Returns:
         kind (grid, task, result, document or drawing), name, grid, goals, surfaces, pose, printer
         (None if the file names none), texts of own materials, messages about what was not taken
-        over, and what is to be reported of a drawing: format, unit, layers and mends (None for other
-        files). Of a surface: kind, name, and what `surface_of` says.
+        over, and what is to be reported of a drawing: format, unit, layers and mends (None for
+        other files). Of a surface: kind, name, and what `surface_of` says.
 
     Raises:
         InputError: the file holds nothing that can be opened; the message says what and where.
