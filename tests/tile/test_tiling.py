@@ -19,7 +19,7 @@ from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.fabricate.bill import bill_of, bill_text
 from simulearn.grid import read_grid
 from simulearn.simulate import engine
-from simulearn.tile import Settings, between, from_chart, heights, tile
+from simulearn.tile import Settings, between, from_chart, from_quads, heights, tile
 from simulearn.tile.pieces import assembled, pieces, tiling_figures
 from simulearn.tile.searching import ModuleAnswer
 
@@ -165,8 +165,11 @@ def test_without_finite_elements_it_is_said(tiled):
 
 
 def test_modules_of_a_wrong_size_are_reported_with_the_right_one():
-    with pytest.raises(InputError, match=r"beams of 20 to 100 mm are learnt\. Modules of about"):
+    with pytest.raises(InputError, match=r"learnt\. Modules of about .*: --size"):
         tile(ring(3), SMALL, None, here())
+    corners = np.array([[0.0, 0, 0], [300, 0, 0], [300, 300, 0], [0, 300, 0]])
+    with pytest.raises(InputError, match="draw quads of that size, or give --cells"):
+        tile(from_quads(corners, np.array([[0, 1, 2, 3]]), (2, 2)), SMALL, None, here())
     with pytest.raises(InputError, match="is too slow to tile with"):
         tile(ring(), replace(SMALL, engine="fea"), None, here())
 
