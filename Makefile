@@ -27,7 +27,7 @@ test: $(VENV)/ready
 
 # The core of the suite with another Python: make test-core PYTHON=python3.13 VENV=.venv-3.13
 test-core: $(VENV)/ready
-	$(ONE_THREAD) $(BIN)/python -m pytest -n $(PROCESSES) --dist worksteal $(CORE)
+	$(ONE_THREAD) $(KERNELS) $(BIN)/python -m pytest -n $(PROCESSES) --dist worksteal $(CORE)
 
 # The wheel and the sdist, in fresh environments of each Python outside the checkout; needs uv.
 packages: $(VENV)/ready

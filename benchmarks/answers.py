@@ -22,7 +22,7 @@ time.monotonic = time.process_time  # before a search takes its clock from there
 import numpy as np
 from matplotlib.figure import Figure
 
-from inverse import ASKED, LENGTH, PICTURES, SEED, task_of
+from inverse import LENGTH, PICTURES, SEED, WANTED, task_of
 from report import Report
 from simulearn.grid import Rules, draw_valid
 from simulearn.inverse import Space, optimize
@@ -90,12 +90,12 @@ def table_row(k: int, row: dict[str, Any]) -> list[str]:
     apart = away[np.triu_indices(len(away), 1)]
     errors = [error(answer) for answer in answers]
     lengths = [answer["actuator_mm"] for answer in answers]
-    good = [m for e, m in zip(errors, lengths, strict=True) if e <= ASKED]
+    good = [m for e, m in zip(errors, lengths, strict=True) if e <= WANTED]
     return [
         str(k),
         f"{error(one):.2f}",
         f"{errors[0]:.2f}",
-        f"{sum(e <= ASKED for e in errors)} of {len(errors)}",
+        f"{sum(e <= WANTED for e in errors)} of {len(errors)}",
         f"{max(errors):.2f}",
         f"{apart.min():.2f} / {apart.mean():.2f}" if len(apart) else "",
         f"{lengths[0]:.0f} / {min(good, default=np.nan):.0f}",
@@ -146,7 +146,7 @@ def main() -> None:
         "take twice as long again; times are of one core of the processor. Errors are means over "
         "the nine goals, by finite elements."
     )
-    head = ["task", "one answer, mm", "best of several, mm", f"within {ASKED:g} mm", "worst, mm"]
+    head = ["task", "one answer, mm", "best of several, mm", f"within {WANTED:g} mm", "worst, mm"]
     head += ["distance, least / mean", "actuators of the best / least, mm"]
     head += ["one answer, s", "several, s"]
     report.table(head, [table_row(k, row) for k, row in enumerate(rows)])
@@ -156,7 +156,7 @@ def main() -> None:
     gains = [error(row["one"]) - error(row["several"]) for row in rows]
     no_worse, better = sum(g >= -0.05 for g in gains), sum(g > 0.05 for g in gains)
     report.say(
-        f"{sum(e <= ASKED for e in every)} of {len(every)} answers come within {ASKED:g} mm "
+        f"{sum(e <= WANTED for e in every)} of {len(every)} answers come within {WANTED:g} mm "
         f"({unchecked} had no time for their check by finite elements and count by the model). "
         f"Several answers take {np.median(ratio):.1f} times as long as one in the median, "
         f"{max(ratio):.1f} times at most. The best of several is no worse than the one answer in "

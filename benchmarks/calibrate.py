@@ -63,7 +63,7 @@ def main() -> None:
     goal = material.calibration.curvature
     active = brentq(lambda e: bending(material, e) - goal, 0.05, 0.16, xtol=1e-6)
     active = round(float(active), 5)
-    print(f"e(active) = {active}: {bending(material, active):.4f} deg/mm, asked {goal}")
+    print(f"e(active) = {active}: {bending(material, active):.4f} deg/mm, wanted {goal}")
     material = changed(material, "shrinkage", active=active, shell=active)
 
     low, high = 0.02, 1.0
@@ -71,7 +71,7 @@ def main() -> None:
     amplitude = round(float(amplitude), 3)
     print(
         f"creep amplitude = {amplitude}: median share {creep_share(material, amplitude):.4f} "
-        f"of {DESIGNS} designs, asked {CREEP_SHARE}"
+        f"of {DESIGNS} designs, wanted {CREEP_SHARE}"
     )
     if write:
         path = HERE / f"{NAME}.toml"

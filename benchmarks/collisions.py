@@ -33,7 +33,8 @@ from simulearn.grid import Grid, Rules, draw_kind, draw_valid
 from simulearn.material import load_material
 from simulearn.simulate import Result, engine, read_npz, write_npz
 from simulearn.simulate.colliding import with_collisions
-from simulearn.simulate.learned import Learned, designs_of
+from simulearn.simulate.designs import designs_of
+from simulearn.simulate.learned import Learned
 
 Array = NDArray[np.float64]
 Pair = tuple[str, str]  # names of two parts
@@ -332,12 +333,12 @@ def cost(count: int = 60) -> list[tuple[str, str, str, str]]:
         spent: list[tuple[float, float]] = []
         for k in range(0, count) if many == 1 else range(9):
             some = grids[k : k + 1] if many == 1 else grids
-            asked = designs_of(some, learned.material)
+            batch = designs_of(some, learned.material)
             for _ in range(2):  # the first is a warm-up
                 begun = time.perf_counter()
-                frames = learned.bundle.model.rollout(asked)
+                frames = learned.bundle.model.rollout(batch)
                 between = time.perf_counter()
-                find_all(frames.joints, frames.sections, asked.beams, asked.actuators)
+                find_all(frames.joints, frames.sections, batch.beams, batch.actuators)
                 ended = time.perf_counter()
             spent.append(((between - begun) / many, (ended - between) / many))
         rollout, found = (1000 * float(np.median(x)) for x in zip(*spent, strict=True))

@@ -104,7 +104,7 @@ def main() -> None:
     )
     report.table(
         ("design", "hidden change", "mean deviation, mm", "joints found", "their mean error, mm",
-         "largest", "noise that is told, mm", "time, s"),
+         "largest", "noise by the report, mm", "time, s"),
         scans,
     )  # fmt: skip
     report.say(

@@ -111,10 +111,10 @@ def main() -> None:
                 if (folder / "figures.json").exists():
                     continue
                 model = trained(name, size, data, folder)
-                told = {"model": name, "trials": size, **figures(model, batches)}
+                result = {"model": name, "trials": size, **figures(model, batches)}
                 with replacing(folder / "figures.json") as temporary:
-                    temporary.write_text(json.dumps(told) + "\n", "utf-8")
-                print(told, flush=True)
+                    temporary.write_text(json.dumps(result) + "\n", "utf-8")
+                print(result, flush=True)
     rows = [json.loads(f.read_text("utf-8")) for f in options.runs.glob("*/figures.json")]
     paper = read_config("paper")
     assert isinstance(paper, PaperConfig)

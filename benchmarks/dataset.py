@@ -28,12 +28,12 @@ def main() -> None:
         team = local_workers(options.workers)
         begun, warm = time.perf_counter(), []
 
-        def told(tally) -> None:
+        def progress(tally) -> None:
             # Workers start and load their kernels with their first trials.
             if tally.done == 2 * options.workers and not warm:
                 warm.append((time.perf_counter(), tally.seconds, tally.done))
 
-        tally = generate(config, folder, team, told)
+        tally = generate(config, folder, team, progress)
         ended = time.perf_counter()
         since, seconds, before = warm[0]
         rate = 60 * (tally.done - before) / (ended - since)
@@ -43,7 +43,7 @@ def main() -> None:
             "`simulearn dataset generate default`:"
         )
         report.table(
-            ["what", "measured", "asked"],
+            ["what", "measured", "wanted"],
             [
                 ["trials a minute, after the workers have started", f"{rate:.0f}", "40"],
                 [
@@ -66,9 +66,9 @@ def main() -> None:
         read_dataset(options.packed, "train", stress=False)
         less = time.perf_counter() - begun
         report.say(
-            f"`{options.packed}` ({options.packed.stat().st_size / 1e6:.1f} MB; asked: < 80): "
+            f"`{options.packed}` ({options.packed.stat().st_size / 1e6:.1f} MB; wanted: < 80): "
             f"{len(data):,} training trials are read in {whole:.2f} s, {less:.2f} s without stress "
-            "(asked: < 3 s)."
+            "(wanted: < 3 s)."
         )
     rows = []
     for name in ("default", *OTHERS):
@@ -94,14 +94,17 @@ def main() -> None:
 def _row(name: str, path: Path) -> list[object]:
     from simulearn.dataset.statistics import summary
 
-    told = json.loads(json.dumps(summary(read_dataset(path, stress=False))))
+    figures = json.loads(json.dumps(summary(read_dataset(path, stress=False))))
     size, beam, motion = (
-        told["quantities"][key] for key in ("dimension", "net_length", "motion_percent")
+        figures["quantities"][key] for key in ("dimension", "net_length", "motion_percent")
     )
-    spread = lambda q: f"{q['mean']:.2f} ({q['p3']:.2f}, {q['p97']:.2f})"  # noqa: E731
+
+    def spread(quantity: dict[str, float]) -> str:
+        return "{mean:.2f} ({p3:.2f}, {p97:.2f})".format(**quantity)
+
     return [
-        name, told["trials"], told["failed"], told["redrawn"], told["halved"], told["unstable"],
-        f"{told['iterations']['median']:.0f}", spread(size), spread(beam),
+        name, figures["trials"], figures["failed"], figures["redrawn"], figures["halved"],
+        figures["unstable"], f"{figures['iterations']['median']:.0f}", spread(size), spread(beam),
         f"{motion['mean']:.1f}", f"{path.stat().st_size / 1e6:.1f}",
     ]  # fmt: skip
 

@@ -44,9 +44,9 @@ def messy(lines: list[np.ndarray], random: np.random.Generator) -> list[np.ndarr
     """Return lines with ends moved along their axes by up to .6 mm, and a fifth drawn twice."""
     found = []
     for a, b in lines:
-        way = (b - a) / np.hypot(*(b - a))
+        direction = (b - a) / np.hypot(*(b - a))
         first, last = random.uniform(-0.6, 0.6, 2)
-        found.append(np.array([a + first * way, b + last * way]))
+        found.append(np.array([a + first * direction, b + last * direction]))
         if random.random() < 0.2:
             found.append(found[-1][::-1])
     return found

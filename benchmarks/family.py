@@ -2,7 +2,7 @@
 
 Three sets of trials by the fine mesh: unseen designs and members of the kinds learnt (those kept
 for testing), kinds that were kept out of training, and beside them the same designs by the default
-mesh, whose own error is told. Then PLA's 2x2 grids against the default mesh, which is what the
+mesh, whose own error is reported. Then PLA's 2x2 grids against the default mesh, which is what the
 model was judged by before it learnt the family.
 
     python benchmarks/family.py [--model default] [--record]

@@ -72,8 +72,8 @@ def main() -> None:
     report.table(
         ["model", *map(str, range(12))],
         [
-            (name, *(f"{f['mean_percent']:.2f} ({f['p97_percent']:.2f})" for f in told))
-            for name, told in frames.items()
+            (name, *(f"{f['mean_percent']:.2f} ({f['p97_percent']:.2f})" for f in per_frame))
+            for name, per_frame in frames.items()
         ],
     )
     report.save()

@@ -37,12 +37,12 @@ def designs(count: int) -> Designs:
 
 def warm(answer: Callable[[Designs], object], count: int) -> float:
     """Return the median seconds of answering so many designs, everything compiled."""
-    asked = designs(count)
-    answer(asked)
+    batch = designs(count)
+    answer(batch)
     spent = []
     for _ in range(max(9, 200 // count)):  # what is short is easily disturbed
         begun = time.perf_counter()
-        answer(asked)
+        answer(batch)
         spent.append(time.perf_counter() - begun)
     return float(np.median(spent))
 
@@ -73,9 +73,9 @@ def turned(model: Model) -> tuple[float, float]:
     sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "learn"))
     from conformance import mirrored_error, turned_error
 
-    asked = designs(40)
-    size = float(asked.dimensions.mean())
-    return 100 * turned_error(model, asked) / size, 100 * mirrored_error(model, asked) / size
+    batch = designs(40)
+    size = float(batch.dimensions.mean())
+    return 100 * turned_error(model, batch) / size, 100 * mirrored_error(model, batch) / size
 
 
 def main() -> None:

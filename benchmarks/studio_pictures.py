@@ -163,6 +163,21 @@ def search(page: Page) -> None:
     page.get_by_role("button", name="Take it").scroll_into_view_if_needed()
 
 
+def surface(page: Page) -> None:
+    """A surface has been dropped, and all joints are to lie on it."""
+    x, y = np.meshgrid(*[np.linspace(-80, 80, 33)] * 2)
+    vertices = np.c_[x.ravel(), y.ravel(), (12 * np.cos(x / 40) - 12 + y**2 / 300).ravel()]
+    k = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]
+    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3) + 1
+    lines = [f"v {u:.3f} {v:.3f} {w:.3f}" for u, v, w in vertices]
+    lines += [f"f {i} {j} {k}" for i, j, k in faces]
+    page.evaluate(DROP, ["hood.obj", "\n".join(lines)])
+    page.get_by_text("closer").first.wait_for(timeout=SECONDS)
+    page.locator(".notice").get_by_role("button", name="Close").click()
+    page.wait_for_timeout(2500)
+
+
 def check(page: Page) -> None:
     """A design is checked by finite elements."""
     tab(page, "Check")
@@ -211,6 +226,7 @@ STATES: dict[str, tuple[tuple[int, int], Shot]] = {
     "goals": (WIDE, goals),
     "suggestion": (WIDE, suggestion),
     "search": (WIDE, search),
+    "surface": (WIDE, surface),
     "check": (WIDE, check),
     "print": (WIDE, printing),
     "profile": (WIDE, profile),

@@ -21,13 +21,13 @@ def main() -> None:
     rows: list[tuple[str, str, str]] = []
     marlow = law_of(pla.law)
     laws = {"Marlow": marlow, "neo-Hookean": neo_hookean(0.78, 3.9), "St Venant": ladder.svk()}
-    for title, rung, asked in (
+    for title, rung, wanted in (
         ("Patch test: inner forces of distorted bricks, relative", ladder.patch, "1e-12"),
         ("Rigid turn of growing bricks: change of forces, relative", ladder.rigid, "1e-12"),
         ("Tangent against central differences, relative", ladder.tangent, "1e-8"),
     ):
         figures = ", ".join(f"{name} {rung(law):.1e}" for name, law in laws.items())
-        rows.append((title, figures, asked))
+        rows.append((title, figures, wanted))
 
     for upper in (1, 2, 3):
         error = 100 * (ladder.bilayer(upper) - 1)
@@ -91,7 +91,7 @@ def main() -> None:
     )
     for title, error in ladder.symmetry().items():
         rows.append((f"Symmetry: {title}, all frames", f"{error:.1e} mm", "1e-6 mm"))
-    report.table(["rung", "measured", "asked"], rows)
+    report.table(["rung", "measured", "wanted"], rows)
 
     saddle = make("saddle")
     runs = {

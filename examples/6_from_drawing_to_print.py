@@ -27,7 +27,7 @@ FOLDER = Path(globals().get("__file__", "here")).parent
 # ## Read the drawing
 # Lines become beams, and joints lie where lines meet or cross. The names of the drawing's layers
 # say which beams curl: `top 0.5` is an actuator in the upper half along half of the beam. Whatever
-# is mended, left out or taken for something is told; nothing happens silently.
+# is mended, left out or taken for something is reported; nothing happens silently.
 
 # %%
 drawing = FOLDER / "leaf.svg"

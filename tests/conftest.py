@@ -1,5 +1,6 @@
 """What tests of several folders use."""
 
+import os
 import shutil
 import sys
 
@@ -17,8 +18,9 @@ RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
 
 @pytest.fixture(scope="session", autouse=True)
 def quick_to_compile():
-    """Compiling for speed takes longer than what tests compile runs."""
+    """Compiling for speed takes longer than what tests compile runs, in their processes too."""
     jax.config.update("jax_disable_most_optimizations", True)
+    os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = "1"
 
 
 @pytest.fixture(scope="module", autouse=True)

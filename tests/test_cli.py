@@ -39,15 +39,15 @@ ENDINGS = [ending[1:] for ending in WRITERS if ending not in (*FILMS, ".html")]
 @pytest.fixture
 def solved(monkeypatch):
     """Let a formula stand in for finite elements; return the grids that it was asked for."""
-    asked = []
+    grids = []
 
     def solver(grid, material, progress, cancel):
-        asked.append(grid)
+        grids.append(grid)
         progress(12, 12)
         return synthetic.result(grid)
 
     monkeypatch.setitem(ENGINES, "fea", lambda: Engine("fea", solver))
-    return asked
+    return grids
 
 
 @pytest.fixture
@@ -623,7 +623,7 @@ def test_an_interrupt_while_modules_are_imported_is_one_line(run, monkeypatch):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device of Linux")
 @pytest.mark.parametrize("words", [["library", "saddle"], ["validate", "saddle"], ["library"]])
-def test_an_output_without_room_is_told(words):
+def test_an_output_without_room_is_reported(words):
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [sys.executable, "-m", "simulearn.cli", *words],

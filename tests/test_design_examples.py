@@ -3,22 +3,12 @@
 import importlib.util
 from pathlib import Path
 
-import jax
 import pytest
 from PIL import Image
 
 from simulearn.assembly import read_assembly
 
 FOLDER = Path(__file__).parent.parent / "examples"
-
-
-@pytest.fixture(scope="module", autouse=True)
-def quick_to_compile():
-    """Compiling for speed takes longer than what is compiled here runs."""
-    before = jax.config.read("jax_disable_most_optimizations")
-    jax.config.update("jax_disable_most_optimizations", True)
-    yield
-    jax.config.update("jax_disable_most_optimizations", before)
 
 
 def example(name):

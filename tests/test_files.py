@@ -8,7 +8,15 @@ import sys
 import pytest
 
 from simulearn.errors import InputError
-from simulearn.files import cache_folder, data_folder, decoded, parse_json, read_text, replacing
+from simulearn.files import (
+    cache_folder,
+    data_folder,
+    decoded,
+    parse_json,
+    path_from,
+    read_text,
+    replacing,
+)
 
 posix = pytest.mark.skipif(os.name != "posix", reason="modes and links of POSIX")
 user = pytest.mark.skipif(
@@ -168,11 +176,24 @@ def test_a_file_without_an_end_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("name", "words"), [("none", "there is no such file"), (".", "cannot be read")]
+    ("name", "words"),
+    [("none", "no such file"), (".", "cannot be read"), ("a\0b", "is not the name of a file")],
 )
 def test_what_cannot_be_read_is_named(tmp_path, name, words):
     with pytest.raises(InputError, match=words):
         read_text(tmp_path / name)
+
+
+def test_a_path_is_seen_from_a_folder_unless_it_is_on_another_drive(tmp_path, monkeypatch):
+    (tmp_path / "a").mkdir()
+    assert path_from(tmp_path / "a", tmp_path / "b" / "c.stl") == "../b/c.stl"
+
+    def other_drive(path, start):
+        raise ValueError("path is on mount 'D:', start on mount 'C:'")
+
+    monkeypatch.setattr("os.path.relpath", other_drive)
+    whole = (tmp_path / "c.stl").resolve().as_posix()
+    assert path_from(tmp_path / "a", tmp_path / "c.stl") == whole
 
 
 def test_what_is_not_text_is_named(tmp_path):

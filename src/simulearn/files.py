@@ -161,8 +161,20 @@ def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
         raise InputError(f"{path}: there is no such file") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: is not UTF-8 text") from error
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{str(path)!r}: is not the name of a file ({error})") from error
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+
+
+def path_from(folder: Path, path: Path) -> str:
+    """Return a path as seen from a folder, with slashes; on another drive the whole path."""
+    try:
+        return Path(os.path.relpath(path.resolve(), folder.resolve())).as_posix()
+    except ValueError:
+        return path.resolve().as_posix()
 
 
 def marked_encoding(data: bytes) -> str | None:

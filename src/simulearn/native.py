@@ -111,6 +111,12 @@ class _Kernels(FunctionCache):
             self.disable()
 
 
+def is_kept(kernel: Any) -> bool:
+    """Return whether an entry has been compiled on this machine and is kept on disk."""
+    file = getattr(getattr(kernel, "_cache", None), "_cache_file", None)
+    return file is None or Path(file._index_path).exists()
+
+
 @contextmanager
 def on_compile(notify: Callable[[], None]) -> Iterator[None]:
     """Call `notify` once, when a kernel has to be compiled while the context lasts."""

@@ -65,6 +65,7 @@ def test_a_failed_part_is_named_and_the_others_are_written(run, rolling, tmp_pat
         (["{file}", "-o", "a.xyz"], "a.xyz: the ending is not one of .json .png"),
         (["{file}", "-o", "{file}"], "is what is read"),
         (["{file}", "--engine", "guess"], "guess"),
+        (["{file}", "--view", "nan", "0"], "--view is nan 0; it is two angles in degrees"),
     ],
 )
 def test_what_is_wrong_is_one_line(run, file, words, message):
@@ -72,6 +73,27 @@ def test_what_is_wrong_is_one_line(run, file, words, message):
     assert (code, out) == (1, "")
     assert message in err
     assert err.count("\n") == 1
+
+
+def test_a_wrong_unit_of_an_obstacle_is_named(run, file):
+    data = json.loads(file.read_text())
+    data["obstacles"][0]["unit"] = "parrots"
+    file.write_text(json.dumps(data))
+    code, _, err = run("assemble", file)
+    assert code == 1
+    assert 'obstacles[0].unit is wrong: "parrots" is no unit of length' in err
+    assert "--unit" not in err
+
+
+def test_an_obstacle_is_not_written_over(run, file):
+    wall = file.with_name("wall.glb")
+    trimesh.creation.box((10, 10, 10)).export(wall)
+    file.write_text(file.read_text().replace("wall.stl", "wall.glb"))
+    before = wall.read_bytes()
+    code, _, err = run("assemble", file, "-o", wall)
+    assert code == 1
+    assert "wall.glb: is what is read; name another file" in err
+    assert wall.read_bytes() == before
 
 
 def test_a_missing_obstacle_is_said_before_anything_is_simulated(run, file, monkeypatch):

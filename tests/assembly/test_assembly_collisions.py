@@ -91,6 +91,18 @@ def test_an_obstacle_is_met_in_the_frame_that_reaches_it(tmp_path):
     assert assembled.collisions == ()
 
 
+def test_an_obstacle_that_is_not_closed_is_told(tmp_path):
+    block = box(tmp_path, (400.0, 400.0, 10.0), (0, 0, 300))
+    assembly = Assembly((Part("a", assembling.SQUARE),), obstacles=(block,))
+    assert simulate_assembly(assembly, assembling.Rolling()).warnings == ()
+    mesh = trimesh.load(block.file)
+    mesh.update_faces(np.arange(len(mesh.faces)) > 0)
+    mesh.export(block.file)
+    (message,) = simulate_assembly(assembly, assembling.Rolling()).warnings
+    assert message.code == "surface-open"
+    assert "obstacle box is no closed body" in message.message
+
+
 def test_what_stands_still_is_compared_once_and_named_rightly():
     # Two pairs that stand still, and a part that comes last and runs into the second pair.
     parts = [part("a"), part("b", 500), part("c", 0, 0, 3), part("late", 500, 0, 3)]

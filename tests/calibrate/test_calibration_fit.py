@@ -74,7 +74,7 @@ def test_intervals_cover(by_formula):
     assert 0.8 <= inside / (6 * count) <= 0.99
 
 
-def test_scatter_and_size_are_told(by_formula):
+def test_scatter_and_size_are_reported(by_formula):
     calm = fit(arcs.filled(BASE, BASE, noise=0.1, seed=1), BASE)
     form = arcs.filled(BASE, BASE, noise=0.1, seed=1, repeats=6, scatter=0.06, size=1.01)
     wild = fit(form, BASE)
@@ -87,7 +87,7 @@ def test_scatter_and_size_are_told(by_formula):
     assert high - low < 0.01
 
 
-def test_noise_of_readings_is_told(by_formula):
+def test_noise_of_readings_is_reported(by_formula):
     noisy = fit(arcs.filled(BASE, BASE, noise=0.9, seed=2, repeats=6), BASE)
     quiet = fit(arcs.filled(BASE, BASE, noise=0.1, seed=2, repeats=6), BASE)
     assert noisy.noise.reading == pytest.approx(0.9, rel=0.25)

@@ -147,9 +147,9 @@ def test_many_beams_and_many_designs():
     """The sweep over boxes finds what single comparisons find."""
     rng = np.random.default_rng(5)
     middles = rng.uniform(0, 150, (120, 3))
-    ways = rng.normal(size=(120, 3)) * [1, 1, 0.2]
-    ways *= 30 / np.linalg.norm(ways, axis=1, keepdims=True)
-    beams = np.array([beam(m - w, m + w) for m, w in zip(middles, ways, strict=True)])
+    directions = rng.normal(size=(120, 3)) * [1, 1, 0.2]
+    directions *= 30 / np.linalg.norm(directions, axis=1, keepdims=True)
+    beams = np.array([beam(m - w, m + w) for m, w in zip(middles, directions, strict=True)])
     ends = np.arange(240).reshape(120, 2)
     joints = np.array([cube((1e4 + 100 * k, 0, 0), 7.2) for k in range(240)])
     together = find_all(joints[None, None].repeat(2, 0), beams[None, None].repeat(2, 0), ends)
@@ -174,8 +174,8 @@ def test_bodies_of_an_assembly():
     flat = synthetic.result(grid, solid=False)
     body = Body(flat.joints, flat.beams, grid.beams, grid.actuators)
     above, far = (
-        body._replace(joints=body.joints + way, sections=body.sections + way)
-        for way in ([30, 5, 3.5], [0, 0, 90])
+        body._replace(joints=body.joints + shift, sections=body.sections + shift)
+        for shift in ([30, 5, 3.5], [0, 0, 90])
     )
     assert between([body, far]) == ()
     assert between([body]) == ()

@@ -62,7 +62,7 @@ def test_a_change_beyond_the_family_is_called_so():
     assert "(outside the family)" in verdict(found)
 
 
-def test_changes_that_cannot_be_told_apart_are_called_so():
+def test_changes_that_cannot_be_distinguished_are_called_so():
     found = compared(strain=1.08)
     best = {one.name: one for one in found.explanations}
     assert best["creep"].explained > 0.95

@@ -61,7 +61,7 @@ def test_joints_without_numbers_are_found_though_some_are_missing(seed):
     assert codes(found) == ["joints-missing"]
 
 
-def test_a_symmetric_grid_fits_in_several_ways():
+def test_a_symmetric_grid_fits_in_several_orientations():
     flat = np.array([[x, y, 0.0] for y in (0, 40, 80) for x in (0, 40, 80)])
     found = matches(printed.moved(flat, 4), flat)
     assert len(found) == 8  # the symmetries of a square, either side up

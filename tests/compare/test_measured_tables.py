@@ -107,8 +107,8 @@ def test_units_are_guessed_by_size_and_said(times, unit, mm):
     assert bool(messages) == (unit is not None)
     if unit:
         assert f'"{unit}"' in messages[0].message
-    asked, none = in_millimetres(points, 1e6, unit or "mm")
-    assert asked.places == pytest.approx(points.places * mm)
+    given, none = in_millimetres(points, 1e6, unit or "mm")
+    assert given.places == pytest.approx(points.places * mm)
     assert none == []
 
 

@@ -66,9 +66,9 @@ def test_what_is_wrong_is_named(tmp_path, text, words):
     path = tmp_path / "x.toml"
     head = 'name = "x"\n' + ("" if text.startswith("trials") else "trials = 3\n")
     path.write_text(head + text)
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as raised:
         read_config(path)
-    assert words in str(told.value)
+    assert words in str(raised.value)
 
 
 def test_a_name_that_is_nothing_lists_what_there_is():

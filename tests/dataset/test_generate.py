@@ -84,8 +84,8 @@ def test_a_killed_worker_is_replaced_and_its_trial_done_again(folder, small_file
         if "spawn_main" in " ".join(child.cmdline())
     ]
     workers[0].kill()
-    told = json.loads(process.communicate()[0])
-    assert (told["new"], told["failed"]) == (12, 0)
+    result = json.loads(process.communicate()[0])
+    assert (result["new"], result["failed"]) == (12, 0)
     assert trials(tmp_path / "set") == trials(folder)
 
 
@@ -168,7 +168,7 @@ def test_a_cluster_of_which_a_worker_is_killed_makes_the_same_files(folder, smal
     assert packed(tmp_path / "set", tmp_path / "a.h5") == packed(folder, tmp_path / "b.h5")
 
 
-def test_no_scheduler_is_told_in_a_line(small, tmp_path):
+def test_no_scheduler_is_reported_in_a_line(small, tmp_path):
     with pytest.raises(InputError, match="no Dask scheduler answers there"):
         generate(small, tmp_path / "set", cluster_workers("tcp://127.0.0.1:9"))
 
@@ -176,7 +176,7 @@ def test_no_scheduler_is_told_in_a_line(small, tmp_path):
 @pytest.mark.parametrize(
     "address", ["", "foo", "tcp://", "127.0.0.1", "tcp://127.0.0.1:port", "tcp://nohost.invalid:1"]
 )
-def test_an_address_that_is_none_is_told_in_a_line(address):
+def test_an_address_that_is_none_is_reported_in_a_line(address):
     with (
         pytest.raises(InputError, match="an address is as tcp://host:8786"),
         cluster_workers(address),
@@ -215,7 +215,7 @@ def client(monkeypatch):
     return client
 
 
-def told(waiting=0.0):
+def message(waiting=0.0):
     with pytest.raises(ComputationError) as error, cluster_workers("tcp://here:1", waiting) as team:
         team.check()
     return f"{error.value}; {error.value.hint}"
@@ -223,7 +223,7 @@ def told(waiting=0.0):
 
 def test_a_scheduler_without_workers_is_not_waited_for_without_end(client):
     client.threads = {}
-    assert "has had no workers for 0 s; start some: dask worker tcp://here:1" in told()
+    assert "has had no workers for 0 s; start some: dask worker tcp://here:1" in message()
 
 
 def test_workers_that_leave_are_not_waited_for_without_end(client):
@@ -241,13 +241,13 @@ def test_workers_that_leave_are_not_waited_for_without_end(client):
         (ModuleNotFoundError("no"), "no SimuLearn"),
     ],
 )
-def test_workers_of_another_version_are_told(client, version, words):
+def test_workers_of_another_version_are_reported(client, version, words):
     client.versions["b"] = version
-    assert "the worker b has " in (line := told())
+    assert "the worker b has " in (line := message())
     assert words in line
 
 
-def test_a_scheduler_that_dies_is_told(client, small, tmp_path, monkeypatch):
+def test_a_scheduler_that_dies_is_reported(client, small, tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "run", None)
 
     def submit(*_):
@@ -281,7 +281,7 @@ def test_a_script_without_a_guard_generates(tmp_path, small_file, words):
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), OSError("odd")])
-def test_processes_that_cannot_be_started_are_told(monkeypatch, error):
+def test_processes_that_cannot_be_started_are_reported(monkeypatch, error):
     import pebble
 
     def refuse(*_args, **_more):
@@ -293,16 +293,16 @@ def test_processes_that_cannot_be_started_are_told(monkeypatch, error):
 
 
 def test_the_command_uses_the_processors_that_it_may(run, monkeypatch, tmp_path, small_file):
-    asked = []
+    counts = []
 
     def team(count):
-        asked.append(count)
+        counts.append(count)
         raise ComputationError("enough")
 
     monkeypatch.setattr("simulearn.cli.dataset.cores", lambda: 1)
     monkeypatch.setattr("simulearn.dataset.local_workers", team)
     run("dataset", "generate", small_file, "-o", tmp_path / "set")
-    assert asked == [1]
+    assert counts == [1]
 
 
 def answering(job):
@@ -321,7 +321,7 @@ def team():
 
 
 @pytest.mark.parametrize("cut", [0, 100, -1])
-def test_a_torn_trial_is_made_anew_and_told(small, tmp_path, cut):
+def test_a_torn_trial_is_made_anew_and_reported(small, tmp_path, cut):
     generate(small, tmp_path / "set", team())
     path = min((tmp_path / "set" / "trials").glob("*.npz"))
     whole = path.read_bytes()
@@ -334,7 +334,7 @@ def test_a_torn_trial_is_made_anew_and_told(small, tmp_path, cut):
 
 
 @pytest.mark.parametrize("content", ["", "{", "[1]", "{}", "null"])
-def test_an_odd_file_among_the_failures_is_made_anew_and_told(small, tmp_path, content):
+def test_an_odd_file_among_the_failures_is_made_anew_and_reported(small, tmp_path, content):
     folder = Folder(tmp_path / "set", small)
     key = TrialJob.of(small.design(3), small).key
     folder.failure(key).write_text(content, "utf-8")
@@ -387,7 +387,7 @@ def test_a_folder_that_cannot_be_made(small: Config, tmp_path):
         Folder(tmp_path / "file" / "set", small)
 
 
-def test_no_room_for_an_answer_is_told_with_what_is_kept(small, tmp_path, monkeypatch):
+def test_no_room_for_an_answer_is_reported_with_what_is_kept(small, tmp_path, monkeypatch):
     def full(*_):
         raise InputError("x.npz: cannot be written (No space left on device)")
 

@@ -1,4 +1,4 @@
-"""The packed file: exact to its step, whole or refused, and told in figures."""
+"""The packed file: exact to its step, whole or refused, and summed up in figures."""
 
 import json
 
@@ -75,17 +75,17 @@ def test_a_grid_that_hangs_down_far_needs_wider_increments(file, tmp_path):
 
 
 def test_the_checksum_is_that_of_the_contents(file, tmp_path):
-    told, found = checksum(file)
-    assert told == found
+    recorded, found = checksum(file)
+    assert recorded == found
     changed = tmp_path / "changed.h5"
     changed.write_bytes(file.read_bytes())
     with h5py.File(changed, "r+") as stored:
         stored["topologies/0000/actuators"][0, 0] += 0.25
-    told, found = checksum(changed)
-    assert told != found
+    recorded, found = checksum(changed)
+    assert recorded != found
 
 
-def test_an_unfinished_run_is_packed_only_if_asked(folder, small, tmp_path):
+def test_an_unfinished_run_is_packed_only_on_request(folder, small, tmp_path):
     from simulearn.dataset.generate import Folder
 
     more = Folder(tmp_path / "set", small.model_copy(update={"trials": 14}))
@@ -97,7 +97,7 @@ def test_an_unfinished_run_is_packed_only_if_asked(folder, small, tmp_path):
     assert pack(more.path, tmp_path / "x.h5", partial=True) == 12
 
 
-def test_a_locked_file_is_told(file):
+def test_a_locked_file_is_reported(file):
     fcntl = pytest.importorskip("fcntl")
     with file.open("rb+") as stream:
         fcntl.flock(stream, fcntl.LOCK_EX)

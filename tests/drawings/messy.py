@@ -93,9 +93,9 @@ def ends_moved(lines: list[np.ndarray], random: np.random.Generator, most: float
     """Return lines with ends moved along their own axes, inwards and outwards."""
     moved = []
     for a, b in lines:
-        way = (b - a) / np.hypot(*(b - a))
+        direction = (b - a) / np.hypot(*(b - a))
         first, last = random.uniform(-most, most, 2)
-        moved.append(np.array([a + first * way, b + last * way]))
+        moved.append(np.array([a + first * direction, b + last * direction]))
     return moved
 
 
@@ -127,10 +127,10 @@ def with_stubs(lines: list[np.ndarray], random: np.random.Generator) -> list[np.
     stubs = []
     for k in random.integers(0, len(lines), 3):
         a, b = lines[k]
-        way = (b - a) / np.hypot(*(b - a))
+        direction = (b - a) / np.hypot(*(b - a))
         turn = random.uniform(0.5, 1.0) * random.choice([-1, 1])
-        way = np.array([[cos(turn), -sin(turn)], [sin(turn), cos(turn)]]) @ way
-        stubs.append(np.array([b, b + random.uniform(3, 12) * way]))
+        direction = np.array([[cos(turn), -sin(turn)], [sin(turn), cos(turn)]]) @ direction
+        stubs.append(np.array([b, b + random.uniform(3, 12) * direction]))
     return [*lines, *stubs]
 
 

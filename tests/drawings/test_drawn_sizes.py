@@ -44,14 +44,14 @@ def test_no_unit_fits_beams_of_a_millionth():
 
 
 @pytest.mark.parametrize("name", ["m", "in", "um", "cm"])
-def test_the_unit_of_the_file_is_taken_and_told(name):
+def test_the_unit_of_the_file_is_taken_and_reported(name):
     unit = Unit(LENGTHS[name], name, "the header")
     result = grid_of(drawing(scaled(1 / unit.mm), plain=False, unit=unit))
     assert same(result.grid, l_grid())
     assert codes(result)["unit"] == f"the unit is {name} (the header); the drawing is 130 x 130 mm"
 
 
-def test_a_drawing_without_a_unit_is_asked_about():
+def test_a_drawing_without_a_unit_is_a_question():
     with pytest.raises(UnitError, match="does not say its unit") as error:
         grid_of(drawing(scaled(1 / 25.4), plain=False))
     assert error.value.code == "unit-unknown"
@@ -62,7 +62,7 @@ def test_a_drawing_without_a_unit_is_asked_about():
 
 
 @pytest.mark.parametrize("factor", [1 / 25.4, 1e-3, 1e3])
-def test_a_unit_that_makes_an_odd_size_is_asked_about(factor):
+def test_a_unit_that_makes_an_odd_size_is_a_question(factor):
     unit = Unit(1.0, "mm", "the header")
     with pytest.raises(UnitError, match="the header, but in mm the middle beam would be"):
         grid_of(drawing(scaled(factor), plain=False, unit=unit))
@@ -83,7 +83,7 @@ def test_the_width_goes_before_every_unit():
         grid_of(drawing(l_grid()), Options(width=0))
 
 
-def test_the_lower_left_corner_becomes_the_origin_and_that_is_told():
+def test_the_lower_left_corner_becomes_the_origin_and_that_is_reported():
     far = [line + np.array([5e5, -3e6]) for line in l_grid()]
     result = grid_of(drawing(far))
     np.testing.assert_allclose(result.grid.joints.min(axis=0), 0, atol=1e-9)
@@ -158,7 +158,7 @@ def arc(step):
     return np.stack([50 * np.cos(angle), 50 * np.sin(angle), 0 * angle], axis=1)
 
 
-def test_curves_become_chords_only_where_that_is_asked_for():
+def test_curves_become_chords_only_on_request():
     chord = drawing([[[-50, 0], [50, 0]]], curves=[Curve("ARC", arc, "shapes")])
     assert "1 x ARC" in codes(grid_of(chord))["curves"]
     result = grid_of(chord, Options(flatten=2))
@@ -206,7 +206,7 @@ def test_lines_of_no_length():
     assert error.value.code == "no-lines"
 
 
-def test_what_is_always_mended_is_told():
+def test_what_is_always_mended_is_reported():
     result = grid_of(drawing([*l_grid(), l_grid()[0]]), Options(without=frozenset({"double"})))
     assert same(result.grid, l_grid())
     assert codes(result)["mend-needed"].startswith("double: a grid has one beam between two")

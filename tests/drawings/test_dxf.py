@@ -473,7 +473,7 @@ def test_attributes_of_blocks_are_text() -> None:
     assert len(drawing.lines) == 1
 
 
-def test_references_that_lead_nowhere_are_told() -> None:
+def test_references_that_lead_nowhere_are_reported() -> None:
     document = grid()
     space = document.modelspace()
     document.add_xref_def("other/site.dxf", "SITE")
@@ -492,7 +492,7 @@ def test_references_that_lead_nowhere_are_told() -> None:
     }
 
 
-def test_a_reference_without_block_is_told() -> None:
+def test_a_reference_without_block_is_reported() -> None:
     document = grid()
     document.blocks.new("GONE_A")
     document.modelspace().add_blockref("GONE_B", (0, 0))
@@ -501,7 +501,7 @@ def test_a_reference_without_block_is_told() -> None:
     assert left_out(drawing) == {("INSERT", "0", "its block GONE_B is not in the file"): 1}
 
 
-def test_a_clipped_block_is_read_as_a_whole_and_told() -> None:
+def test_a_clipped_block_is_read_as_a_whole_and_reported() -> None:
     document = new()
     document.blocks.new("B").add_line((0, 0), (65, 0))
     reference = document.modelspace().add_blockref("B", (0, 0))
@@ -623,7 +623,7 @@ def test_a_file_that_says_nothing_has_no_guess() -> None:
     assert drawing.guess is None
 
 
-def test_an_unknown_number_of_a_unit_is_told() -> None:
+def test_an_unknown_number_of_a_unit_is_reported() -> None:
     data = written(grid()).replace(b"$INSUNITS\n 70\n4\n", b"$INSUNITS\n 70\n99\n")
     drawing = read_dxf(data)
     assert drawing.unit is None
@@ -669,7 +669,7 @@ def test_a_curve_that_cannot_be_flattened_is_an_error() -> None:
     assert caught.value.where == "ELLIPSE 2F"
 
 
-def test_a_missing_end_of_a_section_is_repaired_and_told() -> None:
+def test_a_missing_end_of_a_section_is_repaired_and_reported() -> None:
     end = b"  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES"
     data = written(grid())
     assert end in data

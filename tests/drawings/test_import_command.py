@@ -55,7 +55,7 @@ def test_what_cannot_be_simulated_is_written_with_warnings(tmp_path, monkeypatch
     assert len(read_grid(grid).beams) == 10
 
 
-def test_what_is_wrong_is_one_line_with_a_way_out(tmp_path, monkeypatch, capsys):
+def test_what_is_wrong_is_one_line_with_a_remedy(tmp_path, monkeypatch, capsys):
     file, grid = tmp_path / "beams.json", tmp_path / "grid.json"
     file.write_text(json.dumps({"unit": "um", "lines": BEAMS}))
     code, out, err = run(monkeypatch, capsys, file, "-o", grid)

@@ -1,4 +1,4 @@
-"""From the SVG files of four programs to the grid that was meant, with all that is told."""
+"""From the SVG files of four programs to the grid that was meant, with all that is reported."""
 
 import json
 
@@ -168,9 +168,9 @@ FIGMA = """<svg width="150" height="150" viewBox="0 0 150 150" fill="none"
 def test_figma(options):
     result = imported(FIGMA.encode(), "Frame 1.svg", options)
     assert beams(result.grid) == MEANT
-    told = " ".join(message.message for message in result.messages)
-    assert "clipped" in told
-    assert "filled without a stroke" in told
+    messages = " ".join(message.message for message in result.messages)
+    assert "clipped" in messages
+    assert "filled without a stroke" in messages
 
 
 def test_figma_by_the_standard():
@@ -205,7 +205,7 @@ def test_affinity():
     assert "actuators by colour" in said(result, "actuators")[0]
 
 
-def test_outlines_of_strokes_are_told_as_such():
+def test_outlines_of_strokes_are_reported_as_such():
     bars = "".join(f'<path d="M0 {y}H130V{y + 8}H0Z"/>' for y in (0, 65, 130))
     text = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="130mm" viewBox="0 0 130 138">{bars}</svg>'

@@ -70,18 +70,18 @@ def codes(result):
     return {message.code: message.message for message in result.messages}
 
 
-def test_layers_choose_actuators_and_that_is_told():
+def test_layers_choose_actuators_and_that_is_reported():
     names = ["top 0.5"] * 2 + ["Bottom_1"] * 3 + ["passive"] * 5
     result = grid_of(drawing(BEAMS, names))
     assert result.grid.actuators.tolist() == [0.5] * 2 + [-1] * 3 + [0] * 5
-    told = 'actuators by layer: "top 0.5" is top 0.5 (2 lines); "Bottom_1" is bottom 1 (3 lines)'
-    assert told in codes(result)["actuators"]
+    words = 'actuators by layer: "top 0.5" is top 0.5 (2 lines); "Bottom_1" is bottom 1 (3 lines)'
+    assert words in codes(result)["actuators"]
     assert [layer.ratio for layer in result.layers] == [0.5, -1, 0]
     none = grid_of(drawing(BEAMS, names), Options(actuators="none"))
     assert not none.grid.actuators.any()
 
 
-def test_a_near_miss_is_told_and_not_taken():
+def test_a_near_miss_is_reported_and_not_taken():
     result = grid_of(drawing(BEAMS, ["tpo 0.5"] * 10))
     assert not result.grid.actuators.any()
     assert codes(result)["actuator-near-miss"].startswith('the layer "tpo 0.5" was not read')
@@ -92,11 +92,11 @@ def test_colours_choose_where_no_layer_does():
     assert result.grid.actuators.tolist() == [1, -1, 0.5, 1, *[0] * 6]
     alike = grid_of(coloured(["#ff0000"] * 10))
     assert not alike.grid.actuators.any()
-    asked = grid_of(coloured(["#ff0000"] * 10), Options(actuators="colours"))
-    assert asked.grid.actuators.tolist() == [1] * 10
+    result = grid_of(coloured(["#ff0000"] * 10), Options(actuators="colours"))
+    assert result.grid.actuators.tolist() == [1] * 10
 
 
-def test_a_colour_nearly_of_the_convention_is_told_and_not_taken():
+def test_a_colour_nearly_of_the_convention_is_reported_and_not_taken():
     result = grid_of(coloured(["#f50a0a", *["#000000"] * 9]))
     assert not result.grid.actuators.any()
     assert codes(result)["actuator-near-miss"] == (
@@ -137,7 +137,7 @@ def test_an_actuator_drawn_over_a_beam_counts():
     assert codes(both)["actuators-mixed"].startswith("1 beam")
 
 
-def test_what_the_reader_left_out_is_told():
+def test_what_the_reader_left_out_is_reported():
     left = [LeftOut("TEXT", 3, "notes", "is no line")]
     result = grid_of(drawing(BEAMS, left_out=left, messages=["a block is damaged"]))
     assert codes(result)["left-out"] == '3 x TEXT on the layer "notes" left out: is no line'

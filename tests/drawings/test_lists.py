@@ -137,14 +137,14 @@ def test_the_unit_is_honoured(key, name, mm):
     assert name in result.unit.source
 
 
-def test_numbers_as_text_are_read_and_told():
+def test_numbers_as_text_are_read_and_reported():
     value = [[["0", "0"], ["65.0", "0"]], *BEAMS[1:]]
     found = read_json_lines(value)
     assert found.lines[0].points[1, 0] == 65
     assert found.messages == ['4 numbers are written as text, as in "65.0", and read as numbers']
 
 
-def test_faces_are_told():
+def test_faces_are_reported():
     value = json.loads(json.dumps(FORMS["vertices and faces"]))
     assert read_json_lines(value).messages == [
         "the faces of the mesh give the lines: each side is one"

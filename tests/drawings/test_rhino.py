@@ -223,7 +223,7 @@ def test_blocks_that_multiply_are_refused(read) -> None:
     assert caught.value.code == "too-large"
 
 
-def test_a_block_that_is_not_in_the_file_is_told(read) -> None:
+def test_a_block_that_is_not_in_the_file_is_reported(read) -> None:
     model = grid()
     place(model, uuid.uuid4())
     drawing = read(model)
@@ -368,7 +368,7 @@ def test_other_files_are_refused(data: bytes) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_objects_that_are_damaged_are_told(written) -> None:
+def test_objects_that_are_damaged_are_reported(written) -> None:
     data = bytearray(written(grid()))
     record = (0x20008070).to_bytes(4, "little")  # begins every object
     fourth = -1
@@ -390,7 +390,7 @@ def test_a_process_that_does_not_end_is_stopped(
         read(grid())
 
 
-def test_a_process_that_crashes_is_told(
+def test_a_process_that_crashes_is_reported(
     read, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     (tmp_path / "rhino_process.py").write_text("import os; os.abort()")

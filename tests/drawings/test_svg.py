@@ -36,7 +36,7 @@ def test_encodings(encode):
     assert not drawing.messages
 
 
-def test_letters_in_another_encoding_than_declared_are_told():
+def test_letters_in_another_encoding_than_declared_are_reported():
     drawing = read(svg(f'<g id="Träger">{LINE}</g>').encode("latin-1"))
     assert drawing.lines[0].layer == "Träger"
     assert "Latin-1" in drawing.messages[0]

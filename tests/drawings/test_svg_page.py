@@ -100,7 +100,7 @@ def test_openscad_numbers_are_mm():
         (ILLUSTRATOR, PX + ' inkscape:version="1.3"', ""),
     ],
 )
-def test_a_program_that_cannot_be_told_for_sure_is_a_guess(before, attributes, body):
+def test_a_program_that_is_not_certain_is_a_guess(before, attributes, body):
     drawing = read(svg(body + LINE, attributes, before))
     assert drawing.unit is None
     assert drawing.guess.mm == pytest.approx(25.4 / 72)
@@ -189,7 +189,7 @@ def test_css_transforms_go_before_the_attribute(css, end):
 @pytest.mark.parametrize(
     "transform", ["rotate(10", "rotate(1,2)", "spin(4)", "translate(10%)", "matrix(1 0 0 1)", "5"]
 )
-def test_a_transform_that_cannot_be_read_is_told(transform):
+def test_a_transform_that_cannot_be_read_is_reported(transform):
     drawing = read(svg(f'<g id="g1" transform="{transform}">{LINE}</g>'))
     assert ends(drawing) == [(10, 80, 60, 80)]
     assert "transform of g1" in drawing.messages[0]

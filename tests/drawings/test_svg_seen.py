@@ -91,7 +91,7 @@ def test_text_and_pictures_are_counted():
     }
 
 
-def test_what_is_not_heeded_is_told():
+def test_what_is_not_heeded_is_reported():
     body = (
         f'<g clip-path="url(#c)">{LINE}</g><line x2="9" mask="url(#m)"/><script>x()</script>'
         '<line x2="7" style="rotate:30deg"/><animate attributeName="x2"/>'
@@ -107,7 +107,7 @@ def test_what_is_not_heeded_is_told():
     assert not any("hover" in m for m in messages)
 
 
-def test_lines_off_the_page_are_read_and_told():
+def test_lines_off_the_page_are_read_and_reported():
     drawing = read(svg(LINE + '<line x1="150" x2="190"/><line x1="-5" x2="190"/>'))
     assert len(drawing.lines) == 3
     assert drawing.messages == ["1 line is outside of the page, but read all the same."]

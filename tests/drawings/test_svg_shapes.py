@@ -104,7 +104,7 @@ def farthest(points, chords):
         "M0 0A1 1 0 0 1 40 30",
     ],
 )
-def test_chords_of_a_curve_are_as_near_as_asked(data, chord):
+def test_chords_of_a_curve_are_as_near_as_requested(data, chord):
     curve = read(svg(f'<path transform="scale(1.5,.7) skewX(20)" d="{data}"/>')).curves[0]
     chords, fine = curve.flatten(chord), curve.flatten(1e-5)
     assert farthest(fine, chords) <= chord
@@ -153,7 +153,7 @@ def test_a_line_without_length_is_counted():
 
 
 @pytest.mark.parametrize(
-    ("data", "points", "told"),
+    ("data", "points", "words"),
     [
         ("M0 0L10 0 X 20 0", 2, "X 20 0"),
         ("M0 0L10 0L20", 2, "20"),
@@ -164,14 +164,14 @@ def test_a_line_without_length_is_counted():
         ("M0 0L10 0,,20 0", 2, "20 0"),
     ],
 )
-def test_broken_path_data_is_drawn_up_to_the_error_and_told(data, points, told):
+def test_broken_path_data_is_drawn_up_to_the_error_and_reported(data, points, words):
     drawing = read(svg(f'<path id="p7" d="{data}"/>'))
     assert sum(len(line.points) for line in drawing.lines) == points
-    assert told in drawing.messages[0]
+    assert words in drawing.messages[0]
     assert "p7" in drawing.messages[0]
 
 
-def test_odd_coordinates_are_told():
+def test_odd_coordinates_are_reported():
     drawing = read(svg('<polyline points="0 0 10 0 10"/>'))
     assert drawn('<polyline points="0 0 10 0 10"/>') == [(0, 100, 10, 100)]
     assert "odd count" in drawing.messages[0]

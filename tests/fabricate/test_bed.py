@@ -174,7 +174,7 @@ def test_several_grids_lie_in_a_round_bed():
         prepare([make("dome", (1, 1), 79.0)] * 5, printer)
 
 
-def test_the_shape_is_asked_for_where_it_matters():
+def test_the_shape_is_computed_where_it_matters():
     printer = bed_of(**DELTA)
     grid = make("flat", (3, 3), 70.0)  # 154 mm from the middle
     with pytest.raises(InputError, match='write shape = "round" or shape = "rectangle"'):

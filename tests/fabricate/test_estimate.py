@@ -21,9 +21,11 @@ SMALL = make("twist", (1, 1), 50.0)
 
 def time_of(length, fastest, acceleration, corner=None):
     n = len(length)
-    full = lambda x: np.full(n, float(x)) if np.isscalar(x) else np.array(x, float)  # noqa: E731
-    corner = np.zeros(n) if corner is None else np.array(corner, float)
-    return _times(np.array(length, float), full(fastest), full(acceleration), corner)
+    fastest, acceleration, corner = (
+        np.broadcast_to(np.array(x, float), n).copy()
+        for x in (fastest, acceleration, 0.0 if corner is None else corner)
+    )
+    return _times(np.array(length, float), fastest, acceleration, corner)
 
 
 def test_forty_millimetres_of_bead():
@@ -81,7 +83,7 @@ def test_two_sweeps_in_one_go_are_two_sweeps(seed):
     assert _times(length, fastest, acceleration, corner).sum() == pytest.approx(total, rel=1e-6)
 
 
-def test_time_is_more_than_way_over_speed_and_tends_to_it():
+def test_time_is_more_than_distance_over_speed_and_tends_to_it():
     printer = load_printer("modix-big60")
     job = prepare([make("dome")], printer)
     moves = job.moves

@@ -34,7 +34,7 @@ def run(monkeypatch, capsys):
     return run
 
 
-def test_a_print_is_written_and_told_of(run, tmp_path):
+def test_a_print_is_written_and_reported(run, tmp_path):
     path = tmp_path / "dome.gcode"
     code, out, err = run("gcode", "dome", "--printer", "modix-big60", "-o", path)
     assert code == 0

@@ -171,7 +171,7 @@ def test_the_display_of_a_prusa_printer_finds_its_pictures_and_facts(name, grids
 
 
 @pytest.mark.parametrize(("name", "grids"), EVERY)
-def test_machines_are_told_of_layers(name, grids):
+def test_machines_know_the_layers(name, grids):
     job = job_of(name, grids)
     text, count = job.gcode, len(job.path.layers)
     each = [int(k) for k in re.findall(r"^SET_PRINT_STATS_INFO CURRENT_LAYER=(\d+)$", text, re.M)]

@@ -286,7 +286,7 @@ def test_what_stops_the_print_is_refused(line):
     assert "leave it out" in refusal("voron", f"G28\n{line}")
 
 
-def test_each_firmware_is_told_the_accelerations_in_its_own_words():
+def test_each_firmware_gets_the_accelerations_in_its_own_words():
     limits = {
         "ender-3": ["M204 P500 R1000 T500", "M205 X8 Y8 J0.053"],
         "prusa-mk4": ["M201 X2000 Y2000 Z200 E1200", "M204 P1000 R1200 T2000", "M205 X8 Y8"],

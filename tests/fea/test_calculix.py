@@ -320,16 +320,16 @@ def test_frames_counts_and_progress(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
     solid = bar(np.array([[-0.03, 0.01, 0.01], [0, 0, 0]]), slabs=2)
-    told: list[tuple[int, int]] = []
-    result = calculix(solid, material(weight=WEIGHT), progress=lambda *at: told.append(at))
+    progress: list[tuple[int, int]] = []
+    result = calculix(solid, material(weight=WEIGHT), progress=lambda *at: progress.append(at))
     assert result.displacements.shape == (12, len(solid.nodes), 3)
     assert result.stress.shape == (12, len(solid.bricks), 8, 6)
     assert (result.displacements[0] == 0).all()
     assert (result.displacements[:, solid.fixed] == 0).all()
     assert result.record["iterations"][0] == 0
     assert min(result.record["iterations"][1:]) > 0
-    assert told[-1] == (12, 12)
-    assert told == sorted(told)
+    assert progress[-1] == (12, 12)
+    assert progress == sorted(progress)
     assert not list(tmp_path.iterdir())  # nothing is left behind
 
     monkeypatch.setenv("SIMULEARN_KEEP", "1")
@@ -423,7 +423,7 @@ def test_a_file_cut_short_is_an_error(tmp_path: Path) -> None:
         read_dat(path, 1, 1)
 
 
-def test_the_last_error_is_told_in_one_line() -> None:
+def test_the_last_error_is_reported_in_one_line() -> None:
     log = "good\n *ERROR: first\n\n *ERROR in e_c3d: nonpositive jacobian\n   in 5\n\nend\n"
     assert last_error(log) == "in e_c3d: nonpositive jacobian in 5"
     assert last_error("fine") == ""

@@ -85,10 +85,10 @@ def test_failure_names_the_frame_and_the_reason() -> None:
     assert info.value.hint
 
 
-def test_progress_is_told_frame_by_frame() -> None:
-    told: list[tuple[int, int]] = []
-    simulate_grid(make("flat", (1, 1)), PLA, progress=lambda k, n: told.append((k, n)))
-    assert told == [(k, 12) for k in range(1, 13)]
+def test_progress_is_reported_frame_by_frame() -> None:
+    steps: list[tuple[int, int]] = []
+    simulate_grid(make("flat", (1, 1)), PLA, progress=lambda k, n: steps.append((k, n)))
+    assert steps == [(k, 12) for k in range(1, 13)]
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ def test_a_grid_holds_its_material_and_is_written_with_its_name():
         load_material(grid_from_dict(GRID).material)
 
 
-def test_materials_of_one_name_are_told_apart():
+def test_materials_of_one_name_are_distinguished():
     wide = MINE.model_copy(update={"section": MINE.section.model_copy(update={"width": 8.0})})
     grid = grid_from_dict(GRID, materials={"my-pla": MINE})
     other = dataclasses.replace(grid, material=wide)

@@ -25,10 +25,10 @@ def test_the_longest_ending_wins(name, ending):
 
 
 @pytest.mark.parametrize("name", ["a", "a.exe", ".glb", "a.glb.txt", "glb", "a."])
-def test_other_names_are_told_what_there_is(name):
-    with pytest.raises(InputError, match=r"not one of .*\.png .*\.morph\.glb") as told:
+def test_other_names_are_refused_with_what_there_is(name):
+    with pytest.raises(InputError, match=r"not one of .*\.png .*\.morph\.glb") as raised:
         outputs.ending_of(Path(name))
-    assert str(told.value).startswith(name)
+    assert str(raised.value).startswith(name)
 
 
 def test_help_and_server_list_the_same_formats(run):

@@ -86,10 +86,10 @@ def test_without_ffmpeg_one_line_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("IMAGEIO_FFMPEG_EXE", raising=False)
     monkeypatch.setattr("simulearn.show.video.find_spec", lambda name: None)
-    with pytest.raises(InputError, match=r"apt install ffmpeg.*pip install imageio-ffmpeg") as told:
+    with pytest.raises(InputError, match=r"apt install ffmpeg.*pip install imageio-ffmpeg") as info:
         outputs.check([tmp_path / "a.MP4"])
-    assert "\n" not in str(told.value)
-    assert told.value.code == "package-missing"
+    assert "\n" not in str(info.value)
+    assert info.value.code == "package-missing"
 
 
 def test_ffmpeg_is_found_where_imageio_looks_for_it(tmp_path, monkeypatch, ffmpeg):
@@ -99,7 +99,7 @@ def test_ffmpeg_is_found_where_imageio_looks_for_it(tmp_path, monkeypatch, ffmpe
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a script of a shell")
-def test_what_ffmpeg_says_is_told(tmp_path, monkeypatch):
+def test_what_ffmpeg_says_is_reported(tmp_path, monkeypatch):
     fake = tmp_path / "ffmpeg"
     fake.write_text("#!/bin/sh\necho \"Unknown encoder 'libx264'\" >&2\nexit 1\n")
     fake.chmod(0o755)

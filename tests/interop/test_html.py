@@ -214,7 +214,7 @@ def test_same_result_gives_the_same_bytes(result, tmp_path):
     assert b"\r" not in a
 
 
-def test_missing_package_is_told(result, tmp_path, monkeypatch):
+def test_missing_package_is_reported(result, tmp_path, monkeypatch):
     import simulearn.interop.html as module
 
     module._program.cache_clear()

@@ -1,4 +1,4 @@
-"""The table of vertices: every corner of every frame, with plain numbers, in the order told."""
+"""The table of vertices: every corner of every frame, plain numbers, in the documented order."""
 
 import csv
 

@@ -138,7 +138,7 @@ def of_roles(objects):
     return {layer: of for layer, of in objects.items() if layer.startswith("toolpath::")}
 
 
-def test_the_toolpath_lies_on_the_flat_grid_whichever_way_it_was_printed(tmp_path):
+def test_the_toolpath_lies_on_the_flat_grid_whichever_side_was_printed_first(tmp_path):
     long = bent.result(synthetic.square_grid((1, 5), length=45, actuators=[0.5, -1.0] * 8))
     for result in (RESULT, long):  # the long one is turned on the bed of this printer
         job = prepare([result.grid], load_printer("makerbot-2x"))

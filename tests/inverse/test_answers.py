@@ -9,7 +9,9 @@ import pytest
 from PIL import Image
 from toys import alone, toy
 
-from simulearn.errors import InputError
+from simulearn.cli.answers_report import answers_table
+from simulearn.collisions import Collision
+from simulearn.errors import InputError, Message
 from simulearn.grid import grid_to_dict, make, read_grid
 from simulearn.inverse import Past, Space, optimize, search, search_figures, task_from_dict
 from simulearn.inverse.answers import print_times
@@ -17,10 +19,13 @@ from simulearn.inverse.archive import LEAST, Archive, Distance
 from simulearn.inverse.checking import Check
 from simulearn.inverse.front import Answer, actuators_of, choice, non_dominated, on_front
 from simulearn.inverse.keeping import ANSWERS, read_past, write_past
+from simulearn.inverse.probability import Probability
 from simulearn.inverse.problem import Problem
 from simulearn.inverse.task import Free
 from simulearn.material import load_material
 from simulearn.simulate import Result, engine
+
+ONE = Collision(("beam 3", "beam 7"), 11, 0.0, 8, 1.25, (1.0, -2.0, 3.5))
 
 
 @pytest.fixture
@@ -192,6 +197,57 @@ def test_one_search_comes_to_several_answers_and_goes_on(task, fea, tmp_path):
     again = optimize(task, engine=ByToy("beams"), before=read_past(tmp_path, "name"))
     assert fea.calls == []
     assert [one.grid.digest for one in again.answers] == [one.grid.digest for one in answers]
+
+
+def test_an_answer_that_collides_is_not_the_best_while_another_does_not(
+    task, fea, tmp_path, monkeypatch
+):
+    first = optimize(task, engine=ByToy("beams"))
+    closest = first.answers[0].grid.digest
+    simulate = ByToy.simulate
+
+    def colliding(self, grids, progress=None, cancel=None):
+        found = simulate(self, grids, progress, cancel)
+        if self is not fea:
+            return found
+        return [
+            dataclasses.replace(one, collisions=(ONE,)) if one.grid.digest == closest else one
+            for one in found
+        ]
+
+    monkeypatch.setattr(ByToy, "simulate", colliding)
+    found = optimize(task, engine=ByToy("beams"))
+    (bad,) = (one for one in found.answers if one.collides)
+    assert bad.grid.digest == closest
+    assert not bad.on_front
+    assert not found.answers[0].collides
+    assert not found.check.collisions
+    assert "answers-collide" in {message.code for message in found.warnings}
+    assert "parts run through each other" in bad.words
+    assert bad.to_dict()["collisions"][0]["code"] == "beams-pass"
+    assert [column.header for column in answers_table(found.answers).columns][-1] == "collides"
+    # A run that goes on knows it, though it simulates nothing.
+    write_past(tmp_path, "name", found.steps, found.checks)
+    again = optimize(task, engine=ByToy("beams"), before=read_past(tmp_path, "name"))
+    assert [one.collides for one in again.answers] == [one.collides for one in found.answers]
+    assert not again.check.collisions
+
+
+def test_of_a_robust_task_the_best_is_what_most_prints_meet_the_goals_of():
+    grid = make("saddle", length=60.0)
+
+    def one(share, *collisions):
+        of = Probability(9, 9, "toy", (1.0,), (share,), share, (0.0, 1.0), 1.0, 2.0)
+        return Answer(Check(grid, 1.0, 1.0, passes=collisions), 3, 90.0, None, probability=of)
+
+    passing = Message("beams-pass", "beam 3", "parts run through each other")
+    assert one(0.8).more_robust_than(one(0.6))
+    assert not one(0.6).more_robust_than(one(0.8))
+    assert not one(0.8, passing).more_robust_than(one(0.6))
+    assert one(0.6).more_robust_than(one(0.8, passing))
+    unknown = dataclasses.replace(one(0.8), probability=None)
+    assert not unknown.more_robust_than(one(0.6))
+    assert one(0.6).more_robust_than(unknown)
 
 
 def test_one_answer_is_as_it_was(task, fea):

@@ -52,15 +52,15 @@ def batch(problem):
 
 def test_the_best_of_a_batch_that_does_not_collide_is_kept(problem):
     x, a, errors = batch(problem)
-    asked = []
+    checked = []
 
     def collides(designs):
-        asked.append(designs)
-        return len(asked) == 1
+        checked.append(designs)
+        return len(checked) == 1
 
     problem.collides = collides
     problem.points(x, a)
-    assert len(asked) == 2  # the best collides, the second does not
+    assert len(checked) == 2  # the best collides, the second does not
     assert problem.best.error == pytest.approx(errors[1])
     assert not problem.best.collides
 

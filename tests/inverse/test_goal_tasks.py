@@ -5,6 +5,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
+import rhino3dm
 import trimesh
 
 from simulearn.errors import InputError
@@ -167,11 +168,11 @@ def test_files_are_seen_from_the_folder_of_the_task(tmp_path, run):
         ({"vertex": J1, "distance": 3}, r"goals\[0\] has vertex; with distance it has vertices"),
         ({"vertex": J1, "target": [1, 2, 3], "plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}},
          r"goals\[0\] wants target and plane"),
-        ({"surface": HEIGHTS}, r"goals\[0\] has neither; with surface it has vertex or vertices"),
+        ({"surface": HEIGHTS}, r"goals\[0\] has no vertex and no face; with surface it has"),
         ({"vertices": "beam", "surface": HEIGHTS}, r'goals\[0\].vertices is "beam"; "joints"'),
         ({"vertices": [], "surface": HEIGHTS}, r"goals\[0\].vertices is \[\]"),
         ({"vertices": [["joint", 9, 0]], "surface": HEIGHTS}, r"vertices\[0\]\[1\] is 9; joints"),
-        ({"vertex": J1, "surface": {}}, r"surface has one of file, heights, and vertices"),
+        ({"vertex": J1, "surface": {}}, r"surface has no shape; it has one of file, heights"),
         ({"vertex": J1, "surface": {"files": "x"}}, r"surface.files is not a key here; .* file"),
         ({"vertex": J1, "surface": {"heights": "z", "x": [0, 1], "y": [0, 1]}},
          r'goals\[0\].surface: heights hold "z"'),
@@ -183,6 +184,17 @@ def test_files_are_seen_from_the_folder_of_the_task(tmp_path, run):
          r"surface.place.turn is no rotation"),
         ({"vertex": J1, "surface": {"vertices": [[0, 0, 0]] * 3, "faces": [[0, 1, 2]]}},
          "has no triangle that can be used"),
+        ({"vertex": J1, "surface": {"vertices": [[0, 0, "0"]], "faces": [[0, 1, 2]]}},
+         r"vertices\[0\]\[2\] is \"0\"; vertices of triangles are"),
+        ({"vertex": J1, "surface": {"vertices": [[0, 0, 0]] * 3, "faces": [[0, 1, 10**30]]}},
+         r"faces\[0\]\[2\] is 1000000000000000000000000000000; faces of triangles are"),
+        ({"vertex": J1, "surface": {"vertices": [[0, 0, 0]] * 3, "faces": [[0, 1, 3]]}},
+         "1 of 1 triangles name vertices that are not there"),
+        ({"vertex": J1, "curve": {"points": [[0, 0, 0], [1e200, 0, 0]]}},
+         r"points\[1\]\[0\] is 1e\+200; points are .*none is more than 1,000,000"),
+        ({"vertex": J1, "plane": {"point": [0, 0, 0], "normal": [0, -1e200, 0]}},
+         r"normal\[1\] is -1e\+200"),
+        ({"vertex": J1, "target": [0, 0, 0], "weight": 1e300}, r"weight is 1e\+300"),
         ({"vertex": J1, "curve": {"points": [[0, 0, 0]]}}, "points are a list of at least two"),
         ({"vertex": J1, "curve": {"points": [[0, 0, 0]] * 2}}, "a curve has at least two points"),
         ({"vertex": J1, "plane": {"point": [0, 0, 0]}}, "plane.normal is missing; a normal is"),
@@ -208,13 +220,35 @@ def test_what_is_wrong_is_named(goal, words):
 
 def test_a_wrong_file_is_named_with_its_place(tmp_path):
     path = tmp_path / "task.json"
+    task = task_of({"vertex": J1, "surface": {"file": "a.stl", "unit": "parrots"}})
+    path.write_text(json.dumps(task))
+    with pytest.raises(InputError, match=r'surface.unit is wrong: "parrots" is no unit'):
+        read_task(path, paths=True)
     for file, words in (("none.stl", "there is no such file"), ("task.json", "the ending is not")):
         path.write_text(json.dumps(task_of({"vertex": J1, "surface": {"file": file}})))
         with pytest.raises(InputError, match=rf"goals\[0\].surface: .*{file}: {words}"):
             read_task(path, paths=True)
 
 
-def test_surfaces_out_of_reach_and_of_another_unit_are_told(tmp_path):
+@pytest.mark.parametrize("name", ["best.json", "shape.3dm", "answer-3.json"])
+def test_a_search_writes_over_nothing_that_it_reads(name, tmp_path, run):
+    task = {"vertex": J3, "surface": {"file": "shape.3dm"}}
+    model = rhino3dm.File3dm()
+    model.Objects.AddSphere(rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 20.0))
+    model.Write(str(tmp_path / "shape.3dm"), 7)
+    path = tmp_path / (name if name.endswith("json") else "task.json")
+    path.write_text(json.dumps(task_of(task, engine="beams")))
+    before = path.read_bytes(), (tmp_path / "shape.3dm").read_bytes()
+    code, _, err = run("optimize", path, "-o", tmp_path)
+    assert code == 1
+    assert f"{name}: is what is read, and would be replaced" in err
+    code, _, err = run("rank", path, "-o", path)
+    assert code == 1
+    assert "is what is read" in err
+    assert (path.read_bytes(), (tmp_path / "shape.3dm").read_bytes()) == before
+
+
+def test_surfaces_out_of_reach_and_of_another_unit_are_reported(tmp_path):
     from simulearn.inverse.reach import out_of_reach
 
     far = task_from_dict(
@@ -226,6 +260,10 @@ def test_surfaces_out_of_reach_and_of_another_unit_are_told(tmp_path):
     (message,) = out_of_reach(small.start, small.aims)
     assert message.code == "targets-tiny"
     assert "if its file is in metres" in message.message
+    inches = {"heights": "0.1*x", "x": [0, 3], "y": [0, 3]}
+    small = task_from_dict(task_of({"vertices": "joints", "surface": inches}))
+    (message,) = out_of_reach(small.start, small.aims)
+    assert "if its file is in inches" in message.message
 
 
 def test_a_search_tells_each_goal(beams, tmp_path, run, monkeypatch):

@@ -46,16 +46,16 @@ def test_the_gradient_is_the_slope_of_the_error(learned, kind):
     model = learned.bundle.model
 
     def error(x, a):
-        told = fitting_slopes(model, space.designs(x[None], a[None]), goals, tolerance=TIGHT)
-        assert told.converged.all()
-        return told
+        slopes = fitting_slopes(model, space.designs(x[None], a[None]), goals, tolerance=TIGHT)
+        assert slopes.converged.all()
+        return slopes
 
     x, a = space.start
-    told = error(x, a)
+    slopes = error(x, a)
     (result,) = learned.simulate([grid])
     points = goals.points(result.joints[-1], result.beams[-1])
-    assert told.cost[0] == pytest.approx(goals.error(points), abs=0.05)
-    own = np.r_[np.einsum("pjc,jc->p", space.motions, told.flat[0]), told.actuators[0]]
+    assert slopes.cost[0] == pytest.approx(goals.error(points), abs=0.05)
+    own = np.r_[np.einsum("pjc,jc->p", space.motions, slopes.flat[0]), slopes.actuators[0]]
     step = 1e-3
     differences = [
         (error(x + e, a).cost[0] - error(x - e, a).cost[0]) / (2 * step)

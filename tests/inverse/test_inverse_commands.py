@@ -19,7 +19,7 @@ def task_file(small, tmp_path):
     return path
 
 
-def test_a_search_leaves_grid_figures_history_and_pictures(run, task_file, tmp_path):
+def test_a_search_leaves_grid_figures_history_and_pictures(run, task_file, tmp_path, monkeypatch):
     folder = tmp_path / "found"
     code, out, err = run("optimize", task_file, "-o", folder)
     assert code == 0
@@ -50,7 +50,8 @@ def test_a_search_leaves_grid_figures_history_and_pictures(run, task_file, tmp_p
         points = goals.points(result.joints[-1], result.beams[-1])
         assert goals.error(points) == pytest.approx(error, abs=0.05)
 
-    # The same command has nothing to add; more iterations go on.
+    # The same command has nothing to add; more iterations go on. Their pictures are as before.
+    monkeypatch.setattr("simulearn.cli.inverse.search_pictures", lambda *_: [])
     again = json.loads(run("optimize", task_file, "-o", folder, "--json")[1])
     assert again["iterations"] == 3
     more = json.loads(run("optimize", task_file, "-o", folder, "--iterations", 5, "--json")[1])
@@ -83,22 +84,22 @@ def test_an_interrupt_keeps_the_best(run, task_file, tmp_path, monkeypatch):
     assert search.METHODS
 
 
-def test_a_ranking_is_told_drawn_and_picked_from(run, task_file, tmp_path):
+def test_a_ranking_is_reported_drawn_and_picked_from(run, task_file, tmp_path):
     cards, data, after = tmp_path / "cards.png", tmp_path / "all.json", tmp_path / "next.json"
     words = ("rank", task_file, "-o", cards, "-o", data, "--pick", 1, "--to", after)
     code, out, _ = run(*words)
     assert code == 0
     assert "valid modifications, five that differ" in out
-    told = json.loads(data.read_text())
-    assert len(told["suggestions"]) == 5
-    assert told["modifications"][0]["error_mm"] == told["suggestions"][0]["error_mm"]
-    assert told["suggestions"][0]["error_mm"] < told["error_mm"]
+    ranking = json.loads(data.read_text())
+    assert len(ranking["suggestions"]) == 5
+    assert ranking["modifications"][0]["error_mm"] == ranking["suggestions"][0]["error_mm"]
+    assert ranking["suggestions"][0]["error_mm"] < ranking["error_mm"]
     with Image.open(cards) as picture:
         assert picture.width == 1750
     begun = read_task(after)
-    assert begun.grid == told["suggestions"][0]["grid"]
+    assert begun.grid == ranking["suggestions"][0]["grid"]
     assert json.loads(run("rank", after, "--json")[1])["error_mm"] == pytest.approx(
-        told["suggestions"][0]["error_mm"], abs=0.05
+        ranking["suggestions"][0]["error_mm"], abs=0.05
     )
 
 
@@ -106,8 +107,8 @@ def test_a_grid_is_ranked_by_what_moves_it(run, tmp_path):
     path, after = tmp_path / "grid.json", tmp_path / "next.json"
     write_grid(make("twist", (1, 1), 50.0), path)
     words = ("rank", path, "--engine", "beams", "--pick", 2, "--to", after, "--json")
-    told = json.loads(run(*words)[1])
-    moved = [row["moved_mm"] for row in told["modifications"]]
+    ranking = json.loads(run(*words)[1])
+    moved = [row["moved_mm"] for row in ranking["modifications"]]
     assert moved[0] > moved[-1] > 0
     assert read_grid(after).beams.shape == (4, 2)
 

@@ -19,25 +19,25 @@ WITHOUT_SLOPES = [name for name in METHODS if name != "gradient"]
 
 def watched(problem):
     """Return a problem that keeps the designs it is asked for."""
-    asked = []
+    simulated = []
 
     def places(designs):
-        asked.append(designs)
+        simulated.append(designs)
         return toy(designs)
 
     problem.places = places
     problem.model = None  # nothing relaxed: every design asked for is one
-    return asked
+    return simulated
 
 
 @pytest.mark.parametrize("name", WITHOUT_SLOPES)
 def test_it_goes_down_and_asks_for_valid_designs_only(name, problem):
-    asked = watched(problem)
+    simulated = watched(problem)
     start = problem.scored(*problem.space.start)
     list(islice(method(name)(problem, start), 4))
     assert problem.best.error < 0.9 * start.error
     count = 0
-    for designs in asked:
+    for designs in simulated:
         count += len(designs)
         for flat, ratios in zip(designs.flat[::5], designs.actuators[::5], strict=True):
             grid = Grid(flat, designs.beams, ratios, designs.fixed)
@@ -89,9 +89,9 @@ def test_any_topology(cells):
 
 def test_designs_without_an_answer_are_passed_over(problem):
     def places(designs):
-        told = toy(designs)
-        told[::2] = np.nan
-        return told
+        points = toy(designs)
+        points[::2] = np.nan
+        return points
 
     start = problem.scored(*problem.space.start)
     problem.places = places

@@ -275,9 +275,9 @@ def test_targets_out_of_reach_are_named(task, engines, scale, code):
         task.start, Goals.of(goals.vertices, scale * goals.targets, goals.weights)
     )
     assert {message.code for message in messages} == ({code} if code else set())
-    told = optimize(task).warnings
-    assert told[:-1] == tuple(out_of_reach(task.start, goals))
-    assert told[-1].code == "nothing-near"
+    warnings = optimize(task).warnings
+    assert warnings[:-1] == tuple(out_of_reach(task.start, goals))
+    assert warnings[-1].code == "nothing-near"
 
 
 @pytest.mark.parametrize(
@@ -288,16 +288,16 @@ def test_targets_out_of_reach_are_named(task, engines, scale, code):
         (10.0, "they lie farther away than the beams reach"),
     ],
 )
-def test_it_is_told_that_nothing_comes_near_and_why(task, engines, scale, words):
+def test_a_warning_says_that_nothing_comes_near_and_why(task, engines, scale, words):
     goals = [
         goal.model_copy(update={"target": [scale * x for x in goal.target]}) for goal in task.goals
     ]
     found = optimize(task.model_copy(update={"goals": goals}))
-    told = [message.message for message in found.warnings if message.code == "nothing-near"]
-    assert len(told) == (words is not None)
+    messages = [message.message for message in found.warnings if message.code == "nothing-near"]
+    assert len(messages) == (words is not None)
     if words:
-        assert words in told[0]
-        assert f"({found.error_mm:.0f} mm are left)" in told[0]
+        assert words in messages[0]
+        assert f"({found.error_mm:.0f} mm are left)" in messages[0]
     if scale < 0.1:
         assert "if they are in metres, multiply them by 1000" in found.warnings[0].message
 

@@ -60,9 +60,9 @@ def test_what_is_not_free_stays():
     grid = make("cone", length=60.0)
     space = Space.of(grid, Free(joints=[0], actuators=[7]))
     x, a = space.start
-    told = space.grid_at(x + 3.0, a + 0.25)
-    assert (told.joints != grid.joints).any(axis=1).tolist() == [True] + 8 * [False]
-    assert (told.actuators != grid.actuators).nonzero()[0].tolist() == [7]
+    moved = space.grid_at(x + 3.0, a + 0.25)
+    assert (moved.joints != grid.joints).any(axis=1).tolist() == [True] + 8 * [False]
+    assert (moved.actuators != grid.actuators).nonzero()[0].tolist() == [7]
 
 
 def test_valid_is_what_validation_says():
@@ -70,10 +70,10 @@ def test_valid_is_what_validation_says():
     source = np.random.default_rng(2)
     x = source.normal(size=(60, len(space.motions))) * 12
     a = np.round(4 * source.uniform(-1, 1, (60, len(space.groups)))) / 4
-    told = space.valid(x, a)
+    valid = space.valid(x, a)
     expected = [validate(space.grid_at(*pair), MATERIAL).valid for pair in zip(x, a, strict=True)]
-    np.testing.assert_array_equal(told, expected)
-    assert 0 < told.sum() < 60
+    np.testing.assert_array_equal(valid, expected)
+    assert 0 < valid.sum() < 60
 
 
 def test_options_are_long_enough_and_nearest_takes_one():

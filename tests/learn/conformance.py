@@ -85,11 +85,11 @@ def gradient_is_that_of_finite_differences(function, point, step=1e-4, tolerance
     slope = np.asarray(jax.grad(function)(point))
     rng = np.random.default_rng(1)
     for _ in range(3):
-        way = rng.normal(size=np.shape(point))
-        way /= np.linalg.norm(way)
-        measured = (function(point + step * way) - function(point - step * way)) / (2 * step)
-        told = float((slope * way).sum())
-        assert abs(float(measured) - told) < tolerance * max(np.linalg.norm(slope), 1e-3)
+        along = rng.normal(size=np.shape(point))
+        along /= np.linalg.norm(along)
+        measured = (function(point + step * along) - function(point - step * along)) / (2 * step)
+        expected = float((slope * along).sum())
+        assert abs(float(measured) - expected) < tolerance * max(np.linalg.norm(slope), 1e-3)
 
 
 LAWS: list[Law] = [

@@ -20,8 +20,8 @@ def test_a_single_beam_ends_where_finite_elements_say(length, ratio):
     frames = bundle_of("beams").model.rollout(designs)
     assert frames.converged.all()
     far = 1 - grid.fixed
-    true, told = (np.asarray(x)[:, far].mean(axis=1) for x in (trial.joints, frames.joints[0]))
+    true, predicted = (np.asarray(x)[:, far].mean(axis=1) for x in (trial.joints, frames.joints[0]))
     moved = np.linalg.norm(true[-1] - true[0])
-    off = np.linalg.norm(told - true, axis=-1)
+    off = np.linalg.norm(predicted - true, axis=-1)
     assert moved > 3
     assert off.max() < 0.02 * length

@@ -44,9 +44,9 @@ def test_the_card_tells_where_the_model_comes_from(saved, sample, small):
 
 
 def test_figures_are_added_to_the_card(saved):
-    told = add_metrics(saved, "sample", {"mean_percent": 3.0})
-    assert bundle_of(told.path).card.metrics == {"sample": {"mean_percent": 3.0}}
-    assert bundle_of(told.path).model is not None
+    measured = add_metrics(saved, "sample", {"mean_percent": 3.0})
+    assert bundle_of(measured.path).card.metrics == {"sample": {"mean_percent": 3.0}}
+    assert bundle_of(measured.path).model is not None
 
 
 def test_a_bundle_is_replaced_and_other_folders_are_not(saved, model, sample, tmp_path):
@@ -61,7 +61,7 @@ def test_a_bundle_is_replaced_and_other_folders_are_not(saved, model, sample, tm
     assert (other / "dear.txt").exists()
 
 
-def test_what_is_no_model_is_told(tmp_path):
+def test_what_is_no_model_is_reported(tmp_path):
     with pytest.raises(InputError, match=r"is not a model \(a folder"):
         bundle_of(tmp_path)
     (tmp_path / "model.json").write_text("{", encoding="utf-8")
@@ -72,7 +72,7 @@ def test_what_is_no_model_is_told(tmp_path):
         bundle_of(tmp_path)
 
 
-def test_another_version_or_kind_is_told(saved):
+def test_another_version_or_kind_is_reported(saved):
     edit(saved, schema="simulearn.model/9")
     with pytest.raises(InputError, match=r"simulearn\.model/9"):
         bundle_of(saved.path)
@@ -84,7 +84,7 @@ def test_another_version_or_kind_is_told(saved):
         bundle_of(saved.path)
 
 
-def test_damaged_or_missing_weights_are_told(saved):
+def test_damaged_or_missing_weights_are_reported(saved):
     file = saved.path / "weights.safetensors"
     content = file.read_bytes()
     file.write_bytes(content[:-1] + b"!")
@@ -95,7 +95,7 @@ def test_damaged_or_missing_weights_are_told(saved):
         _ = bundle_of(saved.path).model
 
 
-def test_a_git_lfs_pointer_is_told_as_one_also_by_validate(saved, run):
+def test_a_git_lfs_pointer_is_recognised_also_by_validate(saved, run):
     pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:abab\nsize 1234567\n"
     (saved.path / "weights.safetensors").write_text(pointer, "utf-8")
     with pytest.raises(InputError, match=r"is a Git LFS pointer, .* `git lfs pull`"):
@@ -149,7 +149,7 @@ def test_arrays_that_do_not_fit_are_named(saved, change):
         _ = bundle_of(saved.path).model
 
 
-def test_an_architecture_that_is_none_is_told(saved):
+def test_an_architecture_that_is_none_is_reported(saved):
     card = bundle_of(saved.path).card
     wrong = {**card.architecture, "release": {"hidden": [3]}}
     edit(saved, architecture=wrong)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from itertools import product
 
 import pytest
 from PIL import Image
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 from simulearn.cli.program import app
 from simulearn.grid import make, write_grid
 from simulearn.learn.common.bundle import bundle_of, save_bundle
+from simulearn.learn.paper import search
 from simulearn.material import load_material
 from simulearn.material.material import HERE
 
@@ -33,10 +35,10 @@ def folder(model, sample, tmp_path_factory):
 
 
 def test_train_leaves_a_model_and_a_curve(small, tmp_path):
-    told = small.model_dump(mode="json")
-    told["phases"] = [{"epochs": 2, "unroll": 10, "noise": 0.0, "batch": 6}]
+    settings = small.model_dump(mode="json")
+    settings["phases"] = [{"epochs": 2, "unroll": 10, "noise": 0.0, "batch": 6}]
     config = tmp_path / "run.toml"
-    config.write_text(toml(told), encoding="utf-8")
+    config.write_text(toml(settings), encoding="utf-8")
     result, stdout = run("train", config, "-o", tmp_path / "run", "--json")
     assert result.exit_code == 0, result.output
     figures = json.loads(stdout)
@@ -52,19 +54,20 @@ def test_train_leaves_a_model_and_a_curve(small, tmp_path):
 
 def test_train_says_what_is_missing(small, tmp_path):
     config = tmp_path / "run.toml"
-    told = {**small.model_dump(mode="json"), "data": str(tmp_path / "none.h5")}
-    config.write_text(toml(told), encoding="utf-8")
+    settings = {**small.model_dump(mode="json"), "data": str(tmp_path / "none.h5")}
+    config.write_text(toml(settings), encoding="utf-8")
     result, _ = run("train", config, "-o", tmp_path / "run")
     assert "there is no such data set" in str(result.exception)
     assert not (tmp_path / "run").exists()
 
 
-def test_search_tries_combinations_and_goes_on(small, tmp_path):
+def test_search_tries_combinations_and_goes_on(small, tmp_path, monkeypatch):
     pytest.importorskip("optuna")
-    told = small.model_dump(mode="json")
-    told["phases"] = [{"epochs": 1, "unroll": 10, "batch": 6}]
+    monkeypatch.setattr(search, "SHARES", (1.0,))  # one kernel for all runs, and for other tests
+    settings = small.model_dump(mode="json")
+    settings["phases"] = [{"epochs": 1, "unroll": 10, "batch": 6}]
     config = tmp_path / "run.toml"
-    config.write_text(toml(told), encoding="utf-8")
+    config.write_text(toml(settings), encoding="utf-8")
     result, _ = run("train", config, "-o", tmp_path / "s", "--search", 1)
     assert result.exit_code == 0, result.output
     result, stdout = run("train", config, "-o", tmp_path / "s", "--search", 2, "--json")
@@ -77,6 +80,23 @@ def test_search_tries_combinations_and_goes_on(small, tmp_path):
     lines = (tmp_path / "s" / "search.csv").read_text("utf-8").splitlines()
     assert len(lines) == 3
     assert width(tmp_path / "s" / "search.png") > 1000
+
+
+def test_search_tries_every_combination_once(small, sample, tmp_path, monkeypatch):
+    pytest.importorskip("optuna")
+    tried = []
+
+    def measured(config, data):
+        tried.append((config.phases[0].noise, config.penalty, config.trials))
+        return {"validation_percent": 1.0 + config.penalty, "gap_mm": 0.1}
+
+    monkeypatch.setattr(search, "_measured", measured)
+    figures = search.search(small, sample, tmp_path, 60)
+    sizes = {trials for _, _, trials in tried}
+    assert len(sizes) == len(search.SHARES)
+    assert sorted(tried) == sorted(product(search.NOISE, search.PENALTY, sizes))
+    assert len(figures["runs"]) == 48
+    assert figures["best"]["penalty"] == 0.0
 
 
 def test_evaluate_tells_figures_and_draws(folder, sample_file, tmp_path):
@@ -132,9 +152,9 @@ def test_validate_takes_the_limits_of_a_model(folder, tmp_path):
     write_grid(make("saddle", length=98.0), tmp_path / "large.json")
     plain, stdout = run("validate", tmp_path / "large.json", "--json")
     assert json.loads(stdout)["warnings"] == []
-    asked, stdout = run("validate", tmp_path / "large.json", "--model", folder, "--json")
+    as_json, stdout = run("validate", tmp_path / "large.json", "--model", folder, "--json")
     assert [w["code"] for w in json.loads(stdout)["warnings"]].count("grid-size") == 1
-    assert plain.exit_code == asked.exit_code == 0
+    assert plain.exit_code == as_json.exit_code == 0
 
 
 def test_what_is_no_model_is_one_line(sample_file):

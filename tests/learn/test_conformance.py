@@ -11,21 +11,21 @@ EXACT = {"beams", "equilibrium"}  # kinds that turn exactly with the design
 
 
 @pytest.fixture(scope="module", params=["small", *shipped()])
-def asked(request):
+def each_model(request):
     if request.param == "small":
         return request.getfixturevalue("model")
     return bundle_of(request.param).model
 
 
 @pytest.mark.parametrize("law", LAWS, ids=name_of)
-def test_it_conforms(law, asked, designs):
-    law(asked, designs)
+def test_it_conforms(law, each_model, designs):
+    law(each_model, designs)
 
 
-def test_it_answers_for_another_topology(asked):
+def test_it_answers_for_another_topology(each_model):
     designs = designs_like(Rules(cells=(1, 2)), 2)
     for law in LAWS[:3]:
-        law(asked, designs)
+        law(each_model, designs)
 
 
 @pytest.mark.parametrize("name", shipped())

@@ -42,18 +42,18 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def fitted(config, sample, folder):
-    told = []
-    bundle, rows, percent = run(config, sample, folder, lambda *x: told.append(x))
-    return bundle, rows, percent, told
+    progress = []
+    bundle, rows, percent = run(config, sample, folder, lambda *x: progress.append(x))
+    return bundle, rows, percent, progress
 
 
 def test_every_stage_gets_better(fitted):
-    bundle, rows, percent, told = fitted
+    bundle, rows, percent, progress = fitted
     for stage in ("law", "network", "stress"):
         part = [row for row in rows if row.stage == stage]
         assert [row.update for row in part] == [10, 20, 30, 40]
         assert part[-1].loss < part[0].loss
-    assert told[-1][1:] == (120, 120)
+    assert progress[-1][1:] == (120, 120)
     assert percent < 5  # mechanics alone, hardly fitted
     assert bundle_of(bundle.path).model.kind == "equilibrium"
 

@@ -74,6 +74,6 @@ def test_noise_is_in_proportion_to_what_has_moved(examples):
     noisy = _noisy(states, examples.frames, jnp.float32(0.1), jax.random.key(3))
     off = np.asarray(noisy.joints - states.joints)
     np.testing.assert_array_equal(off[0], 0)
-    way = np.asarray(states.joints - examples.frames.joints[:1])
-    far = abs(way[9]) > 5
-    assert float((off[9][far] / way[9][far]).std()) == pytest.approx(0.1, rel=0.1)
+    motion = np.asarray(states.joints - examples.frames.joints[:1])
+    far = abs(motion[9]) > 5
+    assert float((off[9][far] / motion[9][far]).std()) == pytest.approx(0.1, rel=0.1)

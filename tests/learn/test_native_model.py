@@ -10,15 +10,19 @@ import numpy as np
 import pytest
 from conformance import designs_like
 
+from simulearn.fea.bar import bar
 from simulearn.grid import Rules, draw_valid, read_grid
 from simulearn.grid.outline import corner_topology
 from simulearn.learn.common.bundle import bundle_of
 from simulearn.learn.common.model import Designs
 from simulearn.learn.equilibrium import corrector, native
 from simulearn.learn.equilibrium.kernels.network import outputs
+from simulearn.learn.equilibrium.kernels.stress import stress_in_space
 from simulearn.learn.equilibrium.printed import prints_of
 from simulearn.material import Family, draw_member, load_material
 from simulearn.mechanics.forces import BeamState
+from simulearn.mechanics.kernels.geometry import set_corners, set_geometry
+from simulearn.mechanics.kernels.path import follow
 from simulearn.mechanics.model import REFERENCE_WIDTH
 from simulearn.mechanics.path import grid_of, schedule_frames, trace
 from simulearn.mechanics.poses import Pose
@@ -124,6 +128,18 @@ def test_a_topology_never_met_compiles_nothing(model):
         model.last(of(draw_valid(Rules(cells=(3, 2)), 3, 0)[0]))
     assert frames.converged.all()
     assert not compiled
+
+
+def test_kernels_are_compiled_for_one_type_of_arrays(model):
+    """Whether arrays may be written, and whether there is one beam or many, is nothing to them."""
+    designs, strip = designs_like(Rules(), 1), of(bar(50.0, 0.5, load_material("pla-hot-water")))
+    written = replace(designs, beams=designs.beams.copy(), flat=designs.flat.copy())
+    written.flat.flags.writeable = False
+    for some in (designs, written, strip):
+        for one in (model, bundle_of("beams").model):
+            assert one.rollout(some).converged.all()
+    for kernel in (set_geometry, follow, outputs, set_corners, stress_in_space):
+        assert len(kernel.signatures) == 1
 
 
 def test_a_snap_is_followed_and_recorded(model):

@@ -1,4 +1,4 @@
-"""Training: it learns, a stopped run goes on bit for bit, and what is wrong is told."""
+"""Training: it learns, a stopped run goes on bit for bit, and what is wrong is reported."""
 
 import json
 import os
@@ -99,12 +99,12 @@ def test_trials_set_aside_are_not_learnt_from_and_tests_not_looked_at(small, sam
     assert sum(len(b) for part in split(fewer, sample) for b in part) == 10
 
 
-def test_too_few_trials_are_told(small, sample):
+def test_too_few_trials_are_reported(small, sample):
     with pytest.raises(InputError, match="takes at least 80"):
         split(small.model_copy(update={"validation": 40}), sample)
 
 
-def test_a_loss_that_is_not_finite_is_told(small, sample):
+def test_a_loss_that_is_not_finite_is_reported(small, sample):
     wild = small.model_copy(update={"rate": 1e30, "clip": 1e30})
     with pytest.raises(ComputationError, match="lower rate"):
         train(wild, sample)
@@ -128,10 +128,10 @@ def test_a_wrong_configuration_names_its_key(small, change, message):
 
 
 def test_ctrl_c_leaves_a_run_that_goes_on(small, sample_file, tmp_path):
-    told = small.model_dump(mode="json")
-    told["phases"] = [{"epochs": 500, "unroll": 10, "noise": 0.0, "batch": 6}]
+    settings = small.model_dump(mode="json")
+    settings["phases"] = [{"epochs": 500, "unroll": 10, "noise": 0.0, "batch": 6}]
     config, folder = tmp_path / "run.toml", tmp_path / "run"
-    config.write_text(toml(told), encoding="utf-8")
+    config.write_text(toml(settings), encoding="utf-8")
     command = [sys.executable, "-m", "simulearn.cli", "train", str(config), "-o", str(folder)]
     process = subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ}

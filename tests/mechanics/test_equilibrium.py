@@ -90,22 +90,24 @@ def newton(topology, half_beams, state):
     """
     count, beams = len(half_beams.weight), topology.ends.shape[1]
 
+    def go(pose, x):
+        return Pose(exp_so3(x[:, 3:]) @ pose.R, pose.p + x[:, :3])
+
     def after(step):
-        go = lambda pose, x: Pose(exp_so3(x[:, 3:]) @ pose.R, pose.p + x[:, :3])  # noqa: E731
         joints, middles = jnp.split(step, [count])
         return BeamState(go(state.joints, joints), go(state.middles, middles))
 
     def out(step):
         at = after(step.reshape(-1, 6))
-        told = jnp.concatenate(forces(topology, half_beams, at)).at[0].set(step[:6])
+        residual = jnp.concatenate(forces(topology, half_beams, at)).at[0].set(step[:6])
         place = jnp.concatenate([at.joints.p, at.middles.p]).at[0].set(0.0)
-        moment = told[:, 3:] - jnp.cross(place, told[:, :3])
-        return jnp.concatenate([told[:, :3], moment], -1).ravel()
+        moment = residual[:, 3:] - jnp.cross(place, residual[:, :3])
+        return jnp.concatenate([residual[:, :3], moment], -1).ravel()
 
     zero = jnp.zeros(6 * (count + beams))
     step = -jnp.linalg.solve(jax.jacfwd(out)(zero), out(zero)).reshape(-1, 6)
-    way = jnp.abs(step[:count, :3]).max()
-    return after(jnp.minimum(1.0, 2.0 / jnp.maximum(way, 1e-9)) * step), way
+    size = jnp.abs(step[:count, :3]).max()
+    return after(jnp.minimum(1.0, 2.0 / jnp.maximum(size, 1e-9)) * step), size
 
 
 def loaded(topology, half_beams, state, steps, lift):
@@ -116,10 +118,10 @@ def loaded(topology, half_beams, state, steps, lift):
         weight[-1] = -lift * step / steps
         here = half_beams._replace(weight=weight)
         for _ in range(60):
-            state, way = newton(topology, here, state)
-            if way < 1e-9:
+            state, size = newton(topology, here, state)
+            if size < 1e-9:
                 break
-        assert way < 1e-8
+        assert size < 1e-8
         out.append(state)
     return out
 
@@ -165,8 +167,8 @@ def test_a_curved_rest_is_taken_up_at_once():
     """A piece with constant rest strain is exact whatever the angle."""
     topology, half_beams, state = chain(2, 60.0, STIFF, 1.5)
     straight = chain(2, 60.0, STIFF)[2]
-    found, way = jax.jit(iterate, static_argnums=(3, 4))(topology, half_beams, straight, 1e-10, 80)
-    assert way < 1e-10
+    found, size = jax.jit(iterate, static_argnums=(3, 4))(topology, half_beams, straight, 1e-10, 80)
+    assert size < 1e-10
     np.testing.assert_allclose(found.joints.p, state.joints.p, atol=1e-8)
 
 
@@ -227,8 +229,8 @@ def test_forces_are_the_slope_of_the_energy(solved, found):
 
     zero = jax.tree.map(lambda x: jnp.zeros((len(x), 6)), (state.joints.p, state.middles.p))
     slope = jax.jit(jax.grad(energy, (0, 1)))(*zero)
-    told = jax.jit(forces)(topology, half_beams, state)
-    for a, b in zip(told, slope, strict=True):
+    balance = jax.jit(forces)(topology, half_beams, state)
+    for a, b in zip(balance, slope, strict=True):
         np.testing.assert_allclose(a, b, atol=2e-5 * float(jnp.abs(b).max()))
 
 

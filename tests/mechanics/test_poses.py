@@ -65,8 +65,8 @@ def test_how_logarithms_change(largest, tolerance):
     change = jax.jit(jax.vmap(jax.jacfwd(lambda e, x: log_se3(exp_se3(x) @ exp_se3(e)))))
     found = change(jnp.zeros_like(small), small)
     turn, along = inverse_right(small)
-    told = jnp.block([[turn, along], [jnp.zeros_like(turn), turn]])
-    np.testing.assert_allclose(told, found, atol=tolerance * 30)
+    expected = jnp.block([[turn, along], [jnp.zeros_like(turn), turn]])
+    np.testing.assert_allclose(expected, found, atol=tolerance * 30)
 
 
 def test_derivatives_at_rest_are_finite():

@@ -135,11 +135,11 @@ def test_no_message_speaks_of_switches():
 
 
 def test_an_answer_carries_what_qualifies_it():
-    told = Message("mirrored", "grid", "a mirrored shape is as likely")
+    mirror = Message("mirrored", "grid", "a mirrored shape is as likely")
 
     def solver(grid, material, progress, cancel):
         shape = synthetic.result(grid)
-        return dataclasses.replace(shape, stable=False, snaps=(Snap(0.94, 10),), warnings=(told,))
+        return dataclasses.replace(shape, stable=False, snaps=(Snap(0.94, 10),), warnings=(mirror,))
 
     (result,) = Engine("formula", solver).simulate([make("saddle", length=120)])
     assert not result.stable

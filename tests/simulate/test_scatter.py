@@ -1,4 +1,4 @@
-"""Prints of one design: how they are drawn, what is told of them, and what is drawn in pictures."""
+"""Prints of one design: how they are drawn, what is reported of them, and their pictures."""
 
 import json
 import threading
@@ -101,19 +101,19 @@ def test_a_spread_is_what_the_prints_do(monkeypatch):
     grid = make("saddle", (1, 1), 50.0)
     result = one(engine("fea").simulate([grid])[0])
     monkeypatch.setattr(scatter, "source_of", lambda materials, engine=None: BY_FEA)
-    told = scattered(result, 4).scatter
+    found = scattered(result, 4).scatter
     draw = draw_prints(PLA, 4, 4)
     centres = frames_by_fea(result.grid, draw.materials, draw.factors).centres
-    np.testing.assert_allclose(told.mean, centres.mean(axis=0))
-    np.testing.assert_allclose(told.up, centres[..., 2].std(axis=0))
+    np.testing.assert_allclose(found.mean, centres.mean(axis=0))
+    np.testing.assert_allclose(found.up, centres[..., 2].std(axis=0))
     away = centres - centres.mean(axis=0)
-    np.testing.assert_allclose(told.plane, np.sqrt((away[..., :2] ** 2).sum(-1).mean(0)))
-    np.testing.assert_allclose(told.up_90, np.percentile(centres[..., 2], [5, 95], axis=0).T)
+    np.testing.assert_allclose(found.plane, np.sqrt((away[..., :2] ** 2).sum(-1).mean(0)))
+    np.testing.assert_allclose(found.up_90, np.percentile(centres[..., 2], [5, 95], axis=0).T)
     in_space = np.sqrt((away**2).sum(-1).mean(0))
-    assert told.overall == pytest.approx(in_space[1:].mean())
-    assert told.percent == pytest.approx(100 * told.overall / grid.dimension)
-    assert told.overall > 0.5
-    assert (told.prints, told.drawn, told.engine) == (4, 4, "fea")
+    assert found.overall == pytest.approx(in_space[1:].mean())
+    assert found.percent == pytest.approx(100 * found.overall / grid.dimension)
+    assert found.overall > 0.5
+    assert (found.prints, found.drawn, found.engine) == (4, 4, "fea")
 
 
 def test_a_spread_is_kept_in_files_and_summaries(quick, tmp_path):
@@ -151,7 +151,7 @@ def test_a_wrong_block_is_named(quick, tmp_path, change, says):
         read_json(tmp_path / "a.json")
 
 
-def test_prints_without_an_answer_are_told(monkeypatch):
+def test_prints_without_an_answer_are_reported(monkeypatch):
     def partly(grid, materials, factors=None):
         prints = pretended(grid, materials, factors)
         lost = np.array([material.shrinkage.active > 0.1 for material in materials])
@@ -159,11 +159,11 @@ def test_prints_without_an_answer_are_told(monkeypatch):
         return prints._replace(converged=~lost)
 
     answer(monkeypatch, partly)
-    told = scattered(synthetic.result(), 40).scatter
+    found = scattered(synthetic.result(), 40).scatter
     lost = int((strains(draw_prints(PLA, 12, 40)) > 0.1).sum())
-    assert 0 < lost == told.drawn - told.prints
-    assert f"{40 - lost} prints ({lost} more have no answer) by" in told.words
-    assert np.isfinite(told.up).all()
+    assert 0 < lost == found.drawn - found.prints
+    assert f"{40 - lost} prints ({lost} more have no answer) by" in found.words
+    assert np.isfinite(found.up).all()
     answer(monkeypatch, lambda *a: partly(*a)._replace(converged=np.zeros(len(a[1]), bool)))
     with pytest.raises(ComputationError, match="only 0 of 40 prints have an answer"):
         scattered(synthetic.result(), 40)
@@ -224,8 +224,8 @@ def test_the_command_tells_and_writes_the_spread(run, quick, tmp_path):
     assert "strains differ by 17.0% between prints, 8.5% between beams of one" in out
     block = json.loads(file.read_text())["scatter"]
     assert len(block["joints"]) == 4
-    told = json.loads(run(*words, "-o", file, "--json")[1])["summary"]["scatter"]
-    assert told == block
+    printed = json.loads(run(*words, "-o", file, "--json")[1])["summary"]["scatter"]
+    assert printed == block
     assert "scatter" not in json.loads(run(*words[:4], "--json")[1])
     assert "differ by" not in run(*words[:4])[1]
     words = (

@@ -66,7 +66,7 @@ def test_joints_know_their_number():
     assert (surface.ratio[surface.joint >= 0] == 0).all()
 
 
-def test_quadrilaterals_are_as_short_as_asked():
+def test_quadrilaterals_are_as_short_as_requested():
     result = synthetic.result()
     for spacing in (1.0, 5.0):
         surface = skin(result, spacing)

@@ -112,7 +112,7 @@ class Hops:
     def __init__(self, ask, path, modelunits="Millimeters"):
         self._ask, self.path, self.units = ask, path, modelunits
         self.balloon, self.inputs, self.outputs = Balloon(), None, None
-        self.rebuilt = self.asked = 0
+        self.rebuilt = self.requests = 0
         self.values = {}
         self.status = None
         self.load()
@@ -194,7 +194,7 @@ class Hops:
         text = json.dumps(body)
         schema = Hops.cache.get(text)
         if schema is None:
-            self.asked += 1
+            self.requests += 1
             address = f"http://{urlsplit(self.path).netloc}/solve"
             response = self._ask("POST", address, text, HEADERS)
             self.status = response.status_code

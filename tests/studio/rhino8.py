@@ -23,7 +23,7 @@ class Rhino:
         self.file = rhino3dm.File3dm()
         self.file.Settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, units)
         self.answers, self.written, self.records = list(answers), [], []
-        self.dots, self.asked, self.selected = [], [], None
+        self.dots, self.selected = [], None
         self._layers = {}
 
     # What a person does
@@ -62,7 +62,6 @@ class Rhino:
         return next(p for p, k in self._layers.items() if k == one.Attributes.LayerIndex)
 
     def _answer(self, question):
-        self.asked.append(question)
         answer = self.answers.pop(0)
         return answer(question) if callable(answer) else answer
 

@@ -69,14 +69,14 @@ def test_drawings(page, studio, axe, forgiven):
     forgiven.append("status of 422")
     do.opened(page, studio.url)
     do.open_file(page, "cell.svg", without_unit())
-    asked = page.get_by_role("dialog", name="How large is cell.svg?")
-    asked.get_by_role("radio", name="Another width").check()
+    size = page.get_by_role("dialog", name="How large is cell.svg?")
+    size.get_by_role("radio", name="Another width").check()
     assert axe(page) == []
-    do.button(asked, "Open at this size").click()
-    told = page.locator(".drawing-panel")
-    told.get_by_role("switch", name="1 gap closed").click()
-    expect(told.get_by_text("Not done")).to_be_visible()
-    do.button(told, "Ends past 1 joint cut").click()
+    do.button(size, "Open at this size").click()
+    panel = page.locator(".drawing-panel")
+    panel.get_by_role("switch", name="1 gap closed").click()
+    expect(panel.get_by_text("Not done")).to_be_visible()
+    do.button(panel, "Ends past 1 joint cut").click()
     assert axe(page) == []
 
 

@@ -64,25 +64,25 @@ def test_a_dropped_drawing_is_one_step_and_so_are_its_mends(page, studio):
     expect(panel(page)).to_be_hidden()
 
 
-def test_the_size_is_asked_for(page, studio, forgiven):
+def test_the_size_is_requested(page, studio, forgiven):
     forgiven.append("status of 422")
     do.opened(page, studio.url)
     do.open_file(page, "odd.svg", without_unit())
-    asked = page.get_by_role("dialog", name="How large is odd.svg?")
-    expect(asked.get_by_role("radio", name="Millimetres 60 × 100 mm likely")).to_be_focused()
-    expect(asked.get_by_role("radio", name="Inches")).to_have_accessible_name(
+    dialog = page.get_by_role("dialog", name="How large is odd.svg?")
+    expect(dialog.get_by_role("radio", name="Millimetres 60 × 100 mm likely")).to_be_focused()
+    expect(dialog.get_by_role("radio", name="Inches")).to_have_accessible_name(
         re.compile("1524 × 2540 mm")
     )
     page.keyboard.press("Escape")
     expect(do.joints(page)).to_have_count(9)
     do.open_file(page, "odd.svg", without_unit())
-    asked.get_by_role("radio", name="Another width").check()
-    asked.get_by_label("Width", exact=True).fill("120")
-    do.button(asked, "Open at this size").click()
+    dialog.get_by_role("radio", name="Another width").check()
+    dialog.get_by_label("Width", exact=True).fill("120")
+    do.button(dialog, "Open at this size").click()
     expect(panel(page)).to_contain_text("120 × 120 mm")
     do.button(panel(page), "Change…").click()
-    asked.get_by_role("radio", name="Millimetres").check()
-    do.button(asked, "Open at this size").click()
+    dialog.get_by_role("radio", name="Millimetres").check()
+    do.button(dialog, "Open at this size").click()
     expect(panel(page)).to_contain_text("60 × 60 mm")
 
 
@@ -125,13 +125,13 @@ def test_what_no_drawing_is_says_so(page, studio, forgiven):
     forgiven.append("status of 422")
     do.opened(page, studio.url)
     drop(page, "part.stp", b"ISO-10303-21;\nHEADER;\n")
-    told = page.get_by_role("dialog", name="part.stp cannot be opened")
-    expect(told).to_contain_text("STEP")
-    do.button(told, "Close").last.click()
+    dialog = page.get_by_role("dialog", name="part.stp cannot be opened")
+    expect(dialog).to_contain_text("STEP")
+    do.button(dialog, "Close").last.click()
     drop(page, "ring.svg", RING)
-    asked = page.get_by_role("dialog", name="ring.svg has only curves")
-    asked.get_by_label("At most off by").fill("5")
-    do.button(asked, "Make straight pieces of curves").click()
+    dialog = page.get_by_role("dialog", name="ring.svg has only curves")
+    dialog.get_by_label("At most off by").fill("5")
+    do.button(dialog, "Make straight pieces of curves").click()
     expect(panel(page)).to_contain_text("110")
     assert do.joints(page).count() > 4
 
@@ -145,8 +145,8 @@ def test_a_drawing_on_a_phone_in_german(page, studio, forgiven):
     page.goto(studio.url)
     expect(page.locator(".status-main.valid")).to_be_visible()
     drop(page, "cell.svg", without_unit())
-    asked = page.get_by_role("dialog", name="Wie groß ist cell.svg?")
-    do.button(asked, "In dieser Größe öffnen").click()
+    dialog = page.get_by_role("dialog", name="Wie groß ist cell.svg?")
+    do.button(dialog, "In dieser Größe öffnen").click()
     expect(panel(page)).to_contain_text("1 Lücke geschlossen")
     expect(do.plan(page)).to_be_visible()
     assert not do.scrolls_sideways(page)

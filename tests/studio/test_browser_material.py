@@ -74,9 +74,9 @@ def test_what_is_wrong_with_a_material_and_what_the_model_does_not_know(page, st
     forgiven.append("status of 422")
     do.opened(page, studio.url)
     open_material(page, own(poisson="0.6"), "bad.toml")
-    told = page.get_by_role("dialog", name="bad.toml cannot be opened")
-    expect(told).to_contain_text("law.poisson is 0.6")
-    do.button(told, "Close").last.click()
+    dialog = page.get_by_role("dialog", name="bad.toml cannot be opened")
+    expect(dialog).to_contain_text("law.poisson is 0.6")
+    do.button(dialog, "Close").last.click()
     do.open_file(page, "wide.toml", own("Wide", width="16.0", shell="2.0"))  # as any file
     expect(page.get_by_text("The learned model does not know it")).to_be_visible()
     do.button(page, "Compute by finite elements").first.click()

@@ -94,9 +94,9 @@ def test_a_profile_of_ones_own_is_used_saved_and_shared(printing, page, visit, s
 def test_a_profile_that_is_none_says_where(printing, page, forgiven, content, words):
     forgiven.append("status of 422")
     open_profile(printing, content)
-    told = page.get_by_role("dialog", name="mine.toml cannot be opened")
-    expect(told).to_contain_text(words)
-    do.button(told, "Close").last.click()
+    dialog = page.get_by_role("dialog", name="mine.toml cannot be opened")
+    expect(dialog).to_contain_text(words)
+    do.button(dialog, "Close").last.click()
     expect(printing.get_by_label("Printer", exact=True)).to_have_value("ender-3")
     expect(do.button(page, "Nothing to undo")).to_be_disabled()
 

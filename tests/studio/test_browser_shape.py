@@ -87,7 +87,7 @@ def test_fingers(page, view, seen):
         assert differ(before, after)
 
 
-def test_a_snap_is_told_in_words_and_on_the_timeline(page, studio):
+def test_a_snap_is_reported_in_words_and_on_the_timeline(page, studio):
     do.opened(page, studio.url)
     do.open_file(page, "snaps.json", SNAPS)
     do.simulated(page)

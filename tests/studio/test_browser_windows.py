@@ -44,9 +44,9 @@ def test_a_design_that_was_changed_in_another_window(page, studio, forgiven, cho
     other = do.opened(page.context.new_page(), page.url)
     named(page, "Second")
     name(other).fill("Third")
-    told = other.get_by_role("dialog", name="The design was changed elsewhere")
-    expect(told).to_be_visible()
-    do.button(told, choice).click()
+    dialog = other.get_by_role("dialog", name="The design was changed elsewhere")
+    expect(dialog).to_be_visible()
+    do.button(dialog, choice).click()
     expect(other.get_by_text("Saved", exact=True).first).to_be_visible()
     if choice == "Take the other":
         expect(name(other)).to_have_value("Second")

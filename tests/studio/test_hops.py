@@ -55,9 +55,9 @@ def place(client):
     return lambda name, units="Millimeters": Hops(ask, f"{HOME}/hops/{name}", units)
 
 
-def drawn(scale=1.0, way=lambda p: p, curve=line_curve):
+def drawn(scale=1.0, moved=lambda p: p, curve=line_curve):
     """Return the curves of a grid of 2 x 2 cells."""
-    spots = [way(tuple(scale * v for v in corner)) for corner in CORNERS]
+    spots = [moved(tuple(scale * v for v in corner)) for corner in CORNERS]
     return [archived(curve(spots[a], spots[b])) for a, b in PAIRS]
 
 
@@ -135,7 +135,7 @@ def test_servers_are_probed(client, method):
     assert client.get("/version").json().keys() == {"rhino", "compute", "git_sha"}
 
 
-def test_an_unknown_component_is_told_in_the_balloon(place):
+def test_an_unknown_component_is_reported_in_the_balloon(place):
     component = place("simulat")
     (error,) = component.balloon.errors
     assert error.startswith("there is no component 'simulat'; there are validate, simulate, rank")
@@ -223,15 +223,15 @@ def test_results_are_in_the_units_of_the_model(place, units, mm):
     joints = (result.centres[-1] + [65, 65, 0]) / mm
     assert component.flat("Joints") == pytest.approx(joints, abs=1e-4 / mm)
     assert component.flat("Bound")[0] == pytest.approx(result.bound_mm / mm, rel=1e-3)
-    told = [message for message in component.flat("Messages") if units in message]
-    assert told
+    messages = [message for message in component.flat("Messages") if units in message]
+    assert messages
     checked = place("validate", units)
     checked.solve({"Curves": drawn(1 / mm)})
     assert any(units in text for text in checked.balloon.warnings) == (mm != 1)
 
 
 @pytest.mark.parametrize("units", [None, "None", "Unset"])
-def test_a_model_without_units_is_in_millimetres_and_that_is_told(place, units):
+def test_a_model_without_units_is_in_millimetres_and_that_is_reported(place, units):
     component = place("validate", units)
     component.solve({"Curves": drawn()})
     assert any("millimetres are taken" in text for text in component.balloon.warnings)
@@ -253,7 +253,7 @@ def turned(p):
 
 def test_a_grid_in_another_plane_stays_in_it(place):
     component = place("simulate")
-    component.solve({"Curves": drawn(way=turned), "Actuators": numbers(*RATIOS)})
+    component.solve({"Curves": drawn(moved=turned), "Actuators": numbers(*RATIOS)})
     assert any("own plane" in text for text in component.balloon.warnings)
     joints = np.array(component.flat("Joints"))
     result = expected()
@@ -266,21 +266,24 @@ def test_a_grid_in_another_plane_stays_in_it(place):
 def test_a_slanted_grid_keeps_its_joints(place):
     c, s = np.cos(0.4), np.sin(0.4)
     component = place("simulate")
-    way = lambda p: (p[0] - 7, c * p[1] + 3, s * p[1] + 100)  # noqa: E731
-    component.solve({"Curves": drawn(way=way), "Frame": [value("System.Int32", 0)]})
-    spots = np.array([way(p) for p in CORNERS])
+
+    def slanted(p):
+        return (p[0] - 7, c * p[1] + 3, s * p[1] + 100)
+
+    component.solve({"Curves": drawn(moved=slanted), "Frame": [value("System.Int32", 0)]})
+    spots = np.array([slanted(p) for p in CORNERS])
     joints = np.array(component.flat("Joints"))
     assert np.linalg.norm(joints[:, None] - spots, axis=-1).min(axis=1).max() < 1e-6
 
 
 def test_a_grid_far_from_the_origin_is_answered_there(place):
     component = place("simulate")
-    component.solve({"Curves": drawn(way=lambda p: (p[0] + 2e6, p[1] - 3e6, 40.0))})
+    component.solve({"Curves": drawn(moved=lambda p: (p[0] + 2e6, p[1] - 3e6, 40.0))})
     joints = np.array(component.flat("Joints"))
     assert joints[0, :2] == pytest.approx([2e6, -3e6], abs=10)
 
 
-# Every way in which Rhino writes a curve
+# Every form in which Rhino writes a curve
 
 
 def in_one(a, b):
@@ -291,7 +294,7 @@ def in_one(a, b):
     return curve
 
 
-WAYS = {
+FORMS = {
     "LineCurve": lambda a, b: archived(line_curve(a, b)),
     "PolylineCurve": lambda a, b: archived(polyline_curve([a, b])),
     "NurbsCurve": lambda a, b: archived(line_curve(a, b).ToNurbsCurve()),
@@ -309,10 +312,10 @@ WAYS = {
 }
 
 
-@pytest.mark.parametrize("way", WAYS)
-def test_every_form_of_a_line_is_read(place, way):
+@pytest.mark.parametrize("form", FORMS)
+def test_every_form_of_a_line_is_read(place, form):
     component = place("validate")
-    curves = [WAYS[way](CORNERS[a], CORNERS[b]) for a, b in PAIRS]
+    curves = [FORMS[form](CORNERS[a], CORNERS[b]) for a, b in PAIRS]
     component.solve({"Curves": curves, "Actuators": numbers(*RATIOS)})
     assert component.balloon.errors == []
     assert component.flat("Ratios") == RATIOS
@@ -336,12 +339,12 @@ def test_ratios_stay_on_the_beams_that_lie_on_their_curves(place):
     rng = np.random.default_rng(3)
     lines, ratios = [], []
     for k in range(3):
-        for way in (0, 1):
+        for axis in (0, 1):
             a, b = np.zeros(3), np.zeros(3)
-            a[way], b[way] = -0.6, 130.5
-            a[1 - way] = b[1 - way] = 65.0 * k
+            a[axis], b[axis] = -0.6, 130.5
+            a[1 - axis] = b[1 - axis] = 65.0 * k
             lines.append((a + rng.uniform(-0.2, 0.2, 3) * [1, 1, 0], b))
-            ratios.append([0.25, 0.5, 0.75, -0.25, -0.5, -0.75][2 * k + way])
+            ratios.append([0.25, 0.5, 0.75, -0.25, -0.5, -0.75][2 * k + axis])
     lines.append((lines[0][0] + [5, 0, 0], lines[0][1] - [5, 0, 0]))
     ratios.append(ratios[0])
     component = place("validate")
@@ -358,7 +361,7 @@ def test_ratios_stay_on_the_beams_that_lie_on_their_curves(place):
         assert ratio == ratios[int(np.argmin(away))]
 
 
-def test_what_was_mended_is_told_with_its_place(place):
+def test_what_was_mended_is_reported_with_its_place(place):
     curves = drawn()
     curves[0] = archived(line_curve((0, 0.4, 0), (64.6, 0, 0)))
     component = place("validate")
@@ -377,9 +380,9 @@ def test_curves_are_left_out_and_counted(place):
     curves = [*drawn(), archived(arc), archived(rhino3dm.Circle(9.0).ToNurbsCurve())]
     component = place("validate")
     component.solve({"Curves": curves})
-    told = " ".join(component.balloon.warnings)
-    assert "1 x NurbsCurve left out" in told
-    assert "1 x PolyCurve left out" in told or "1 x ArcCurve left out" in told
+    warnings = " ".join(component.balloon.warnings)
+    assert "1 x NurbsCurve left out" in warnings
+    assert "1 x PolyCurve left out" in warnings or "1 x ArcCurve left out" in warnings
 
 
 def test_the_fixed_point_chooses_the_joint(place):
@@ -445,10 +448,10 @@ def test_what_is_wrong_is_in_the_balloon(place, given, words):
     assert words in component.balloon.errors[0]
     assert 400 <= component.status < 500
     component.solve({"Curves": drawn(), **given})
-    assert component.asked == 2  # Hops keeps no error
+    assert component.requests == 2  # Hops keeps no error
 
 
-def test_an_invalid_design_is_told_by_validate_with_its_place(place):
+def test_an_invalid_design_is_reported_by_validate_with_its_place(place):
     component = place("validate")
     short = {"Curves": drawn(), "Actuators": numbers(0.05, *RATIOS[1:])}
     component.solve(short)
@@ -469,7 +472,7 @@ def test_answers_are_kept_by_hops(place):
     component = place("simulate")
     for _ in range(2):
         component.solve({"Curves": drawn()})
-    assert component.asked == 1
+    assert component.requests == 1
 
 
 def test_without_the_package_the_component_says_what_to_install(place, monkeypatch, client):
@@ -559,7 +562,7 @@ def test_a_search_is_begun_once_and_can_be_polled(place, client):
     (job,) = submit.flat("Job")
     submit.solve(given)
     assert submit.flat("Job") == [job]
-    assert submit.asked == 2  # the answer is not kept, so that a lost job would be begun anew
+    assert submit.requests == 2  # the answer is not kept, so that a lost job would be begun anew
     poll = place("poll")
     for _ in range(400):
         poll.solve({"Job": text(job)})
@@ -652,7 +655,7 @@ def test_a_request_of_an_old_hops(client):
     assert warning == "the request has no units; millimetres are taken"
 
 
-def test_values_that_no_input_takes_are_told(client):
+def test_values_that_no_input_takes_are_reported(client):
     more = [*body()["values"], {"ParamName": "Colour", "InnerTree": {"0": text("red")}}]
     answer = client.post("/solve", body(values=more))
     assert "Validate has no input Colour; its inputs are Curves" in answer.json()["warnings"][0]
@@ -687,7 +690,7 @@ def test_refusals_are_in_words_of_hops(client, method, path, options, status):
     assert all(errors)
 
 
-def test_a_body_too_large_is_told(client):
+def test_a_body_too_large_is_reported(client):
     small = Client(Settings(file_bytes=100))
     answer = small.post("/solve", body())
     assert answer.status_code == 413

@@ -172,17 +172,17 @@ def archives():
         yield {**fields, "data": base64.b64encode(bytes(data)).decode()}
 
 
-def test_damaged_archives_are_told_at_once():
+def test_damaged_archives_are_reported_at_once():
     """Such archives take the library that reads them up to a minute and all memory."""
-    begun, told = perf_counter(), []
+    begun, errors = perf_counter(), []
     for fields in archives():
         try:
             decoded(fields, "Curves[0]")
         except InputError as error:
-            told.append(str(error))
+            errors.append(str(error))
     assert perf_counter() - begun < SECONDS
-    assert len(told) > 0.9 * COUNT
-    assert all(words.startswith("Curves[0] is ") for words in told)
+    assert len(errors) > 0.9 * COUNT
+    assert all(words.startswith("Curves[0] is ") for words in errors)
 
 
 def test_archives_that_are_whole_keep_their_points():

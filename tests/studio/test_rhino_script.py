@@ -23,11 +23,11 @@ def layer(ratio):
     return f"grid::{'top' if ratio > 0 else 'bottom'} {abs(ratio):g}" if ratio else "grid::passive"
 
 
-def drawn(rhino, scale=1.0, way=lambda p: p, layers=True):
+def drawn(rhino, scale=1.0, moved=lambda p: p, layers=True):
     """Draw a grid of 2 x 2 cells, its actuators on layers or as user text."""
     found = []
     for (a, b), ratio in zip(PAIRS, RATIOS, strict=True):
-        ends = [way(tuple(scale * v for v in CORNERS[k])) for k in (a, b)]
+        ends = [moved(tuple(scale * v for v in CORNERS[k])) for k in (a, b)]
         where = layer(ratio) if layers else "lines"
         found.append(rhino.draw(line_curve(*ends), where, None if layers else str(ratio)))
     return [str(one) for one in found]
@@ -105,7 +105,7 @@ def test_the_surface_is_that_of_the_pictures(result):
 def test_a_model_in_other_units(monkeypatch, studio, result, units):
     mm = {"Inches": 25.4, "Meters": 1000.0}[units]
     rhino = Rhino(units, answers=["Simulate", "Exit"])
-    rhino.selected = drawn(rhino, 1 / mm, way=lambda p: (p[0] + 3, 7.0, p[1]))
+    rhino.selected = drawn(rhino, 1 / mm, moved=lambda p: (p[0] + 3, 7.0, p[1]))
     run(monkeypatch, rhino, studio)
     (mesh,) = rhino.objects("SimuLearn::shape")
     corners = result.joints[-1].reshape(-1, 3) + np.array([65, 65, 0])
@@ -317,6 +317,6 @@ def test_the_route_of_lines_says_what_is_wrong():
     assert any("actuators by layer" in one["text"] for one in answer["remarks"])
     near = [{**lines[0], "layer": "tpo 0.5"}, *lines[1:]]
     answer = client.post("/rhino/grid", {"lines": near}).json()
-    told = [one["text"] for one in answer["remarks"] if not one["quiet"]]
-    assert any("tpo 0.5" in text for text in told)
-    assert any("millimetres are taken" in text for text in told)
+    remarks = [one["text"] for one in answer["remarks"] if not one["quiet"]]
+    assert any("tpo 0.5" in text for text in remarks)
+    assert any("millimetres are taken" in text for text in remarks)

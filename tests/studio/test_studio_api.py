@@ -275,14 +275,14 @@ def test_more_than_can_wait_is_refused(saddle, monkeypatch):
 
     async def ask():
         body = {"json": {"grids": [saddle]}}
-        asked = [
+        waiting = [
             asyncio.create_task(busy._request("POST", "/api/simulate", body)) for _ in range(2)
         ]
         while not gate.begun.is_set():
             await asyncio.sleep(0.01)
         third = await busy._request("POST", "/api/simulate", body)
         gate.opened.set()
-        return third, await asyncio.gather(*asked)
+        return third, await asyncio.gather(*waiting)
 
     refused, answered = awaited(ask())
     problem(refused, 429, "too-many")

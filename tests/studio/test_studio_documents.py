@@ -89,10 +89,10 @@ def test_of_many_at_once_one_comes_through(client):
     save(client, 0)
     statuses = []
 
-    def asked(k):
+    def save_changed(k):
         statuses.append(save(client, 1, changed(["name"], f"window {k}")).status_code)
 
-    threads = [threading.Thread(target=asked, args=(k,)) for k in range(8)]
+    threads = [threading.Thread(target=save_changed, args=(k,)) for k in range(8)]
     for thread in threads:
         thread.start()
     for thread in threads:

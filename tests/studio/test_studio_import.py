@@ -28,7 +28,7 @@ def lengths(body):
     return np.sort(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
 
 
-def test_a_drawing_is_opened_and_all_that_was_done_is_told(client):
+def test_a_drawing_is_opened_and_all_that_was_done_is_reported(client):
     answer = sent(client, svg(), "C:\\mine\\cell.SVG")
     assert answer.status_code == 200
     body = answer.json()
@@ -51,10 +51,10 @@ def test_a_drawing_is_opened_and_all_that_was_done_is_told(client):
     # y is upwards in the grid: the beam dangles below the lower left corner.
     corner = np.min(body["grid"]["joints"], axis=0)
     np.testing.assert_allclose(mends["leaf"]["places"], [corner - [0, 20]], atol=0.01)
-    told = " ".join(message["message"] for message in body["messages"])
-    assert "text" in told
-    assert "circle" in told
-    assert "hidden" in told
+    messages = " ".join(message["message"] for message in body["messages"])
+    assert "text" in messages
+    assert "circle" in messages
+    assert "hidden" in messages
 
 
 def test_a_mend_is_left_undone(client):
@@ -64,7 +64,7 @@ def test_a_mend_is_left_undone(client):
     assert len(body["grid"]["beams"]) == len(mended["grid"]["beams"]) + 1
 
 
-def test_the_unit_is_asked_for_and_then_taken(client):
+def test_the_unit_is_requested_and_then_taken(client):
     body = problem(sent(client, without_unit()), 422, "unit-unknown")
     assert body["detail"].startswith("drawing: ")
     assert body["size"] == pytest.approx([60, 100], abs=1)
@@ -123,7 +123,7 @@ def test_a_file_of_ours_is_no_drawing(client):
     assert body["grid"] == grid
 
 
-def test_broken_drawings_are_told_as_such(client):
+def test_broken_drawings_are_reported_as_such(client):
     random = np.random.default_rng(14)
     whole = svg()
     for _ in range(40):

@@ -84,8 +84,8 @@ def test_a_link_from_another_page_opens_ours(client):
 def test_other_pages_read_nothing(client):
     answer = client.get("/api/version", headers={"Origin": "http://evil.example"})
     assert "access-control-allow-origin" not in answer.headers
-    asked = {"Origin": "http://evil.example", "Access-Control-Request-Method": "POST"}
-    problem(client.request("OPTIONS", "/api/simulate", headers=asked), 405, "method")
+    headers = {"Origin": "http://evil.example", "Access-Control-Request-Method": "POST"}
+    problem(client.request("OPTIONS", "/api/simulate", headers=headers), 405, "method")
 
 
 @pytest.mark.parametrize("path", ["/", "/d/abc", "/api/version", "/page/main.js", "/nothing"])

@@ -1,5 +1,7 @@
 """Files of surfaces and curves: sound ones in their units, broken ones mended or refused."""
 
+import os
+
 import numpy as np
 import pytest
 import rhino3dm
@@ -39,7 +41,7 @@ def test_a_glb_is_in_metres_with_y_up(tmp_path):
     np.testing.assert_allclose(surface.box, [[-20, -20, 80], [20, 20, 120]], atol=0.1)
 
 
-def test_a_unit_may_be_given_and_an_odd_size_is_told(tmp_path):
+def test_a_unit_may_be_given_and_an_odd_size_is_reported(tmp_path):
     small = BALL.copy()
     small.apply_scale(1e-3)
     path = written(small, tmp_path / "a.stl")
@@ -52,7 +54,7 @@ def test_a_unit_may_be_given_and_an_odd_size_is_told(tmp_path):
         read_surface(path, "parrots")
 
 
-def test_a_broken_mesh_is_mended_and_what_was_done_is_told():
+def test_a_broken_mesh_is_mended_and_what_was_done_is_reported():
     vertices = np.vstack([BALL.vertices, [[np.nan, 0, 0]]])
     faces = BALL.faces.copy()
     faces[::7] = faces[::7, ::-1]
@@ -63,10 +65,28 @@ def test_a_broken_mesh_is_mended_and_what_was_done_is_told():
     assert surface.closed
     assert surface.signed_distance(np.zeros((1, 3)))[0] < 0
     found = {message.code: message.message for message in messages}
-    assert found["surface-not-finite"].startswith("2 of ")
+    assert found["surface-not-finite"].startswith("1 of ")
+    assert found["surface-not-there"].startswith("1 of ")
     assert found["surface-degenerate"].startswith("1 of ")
     assert found["surface-duplicates"].startswith("4 of ")
     assert found["surface-flipped"].startswith(f"{len(BALL.faces[::7]):,} of ")
+
+
+@pytest.mark.parametrize("ending", ["obj", "stl"])
+def test_a_byte_order_mark_and_ends_of_lines_of_windows_change_nothing(tmp_path, ending):
+    text = BALL.export(file_type="obj" if ending == "obj" else "stl_ascii")
+    if ending == "obj":  # its first line is a vertex
+        text = "\n".join(line for line in text.splitlines() if line[:2] in ("v ", "f "))
+    path = tmp_path / f"ein Mal Fläche.{ending}"
+    path.write_bytes(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode())
+    assert read_surface(path).closed
+
+
+def test_what_is_drawn_in_mm_and_saved_as_metres_is_told(tmp_path):
+    surface = read_surface(written(BALL, tmp_path / "a.glb"))
+    assert codes(surface) == {"unit"}
+    assert 'if it was drawn in mm, say "unit": "mm"' in surface.warnings[0].message
+    assert codes(read_surface(tmp_path / "a.glb", "mm")) == set()
 
 
 def test_bodies_are_turned_outwards_and_hollows_stay():
@@ -97,7 +117,7 @@ def test_patches_that_meet_but_for_rounding_are_one():
     assert not messages
 
 
-def test_a_strip_with_one_side_is_told():
+def test_a_strip_with_one_side_is_reported():
     t = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     half = np.stack([np.cos(t / 2) * np.cos(t), np.cos(t / 2) * np.sin(t), np.sin(t / 2)], axis=1)
     middle = 4 * np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
@@ -120,6 +140,8 @@ def test_a_strip_with_one_side_is_told():
         ("a.glb", b"glTF", "is damaged, or no GLB file"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "is damaged|holds"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "has no triangle that can be used"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n", "has the vertex 0; OBJ counts from 1"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 1 0/3/4\n", "has the vertex 0"),
         ("a.3dm", b"hello", "no Rhino file"),
         ("a.step", b"ISO-10303-21", "the ending is not one of .stl"),
         ("a.stl", b"version https://git-lfs.github.com/spec/v1\n", "pointer of Git LFS"),
@@ -139,6 +161,17 @@ def test_no_file_and_a_folder_are_refused(tmp_path):
         read_surface(tmp_path / "none.stl")
     with pytest.raises(InputError, match="cannot be read"):
         read_surface(tmp_path)
+    with pytest.raises(InputError, match="is not the name of a file"):
+        read_surface(tmp_path / "a\0.stl")
+    with pytest.raises(InputError, match="an address on the web is no file"):
+        read_surface("https://example.org/a.stl")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes have names on POSIX systems only")
+def test_a_pipe_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "a.stl")
+    with pytest.raises(InputError, match="is a device or a pipe"):
+        read_surface(tmp_path / "a.stl")
 
 
 def test_surfaces_of_rhino_are_tessellated_in_their_unit(tmp_path):
@@ -169,11 +202,17 @@ def test_meshes_and_blocks_of_rhino(tmp_path):
     hidden = rhino3dm.ObjectAttributes()
     hidden.Visible = False
     model.Objects.AddMesh(mesh, hidden)
+    off, below = rhino3dm.Layer(), rhino3dm.Layer()
+    off.Name, below.Name, off.Visible = "off", "below", False
+    below.ParentLayerId = model.Layers[model.Layers.Add(off)].Id
+    unseen = rhino3dm.ObjectAttributes()
+    unseen.LayerIndex = model.Layers.Add(below)
+    model.Objects.AddMesh(mesh, unseen)
     model.Write(str(tmp_path / "a.3dm"), 7)
     surface = read_surface(tmp_path / "a.3dm")
     assert len(surface.faces) == 2
     assert surface.vertices[:, 2].tolist() == [3.0] * 4
-    assert "1 hidden objects" in surface.warnings[0].message
+    assert "2 hidden objects" in surface.warnings[0].message
 
 
 def test_heights_by_an_expression_and_by_a_table():
@@ -225,7 +264,7 @@ def test_curves_of_tables_and_drawings(tmp_path):
     path.write_text("0,0,0,5,0,0\n9,4,0,5,0,0\n")  # two lines that meet
     np.testing.assert_allclose(read_curve(path, "mm").points, [[0, 0, 0], [5, 0, 0], [9, 4, 0]])
     path.write_text("0,0,0,5,0,0\n9,4,0,7,0,0\n")
-    with pytest.raises(InputError, match="2 separate curves"):
+    with pytest.raises(InputError, match=r"2 separate curves.*there are two or three columns"):
         read_curve(path)
     svg = tmp_path / "a.svg"
     svg.write_text(

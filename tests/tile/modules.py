@@ -4,6 +4,7 @@ import hashlib
 import os
 import subprocess
 import sys
+import time
 from concurrent.futures import Future
 from contextlib import contextmanager
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from simulearn.dataset.workers import Workers
 from simulearn.grid import grid_to_dict, lattice
-from simulearn.tile import from_chart, revolution
+from simulearn.tile import from_chart, heights, revolution
 from simulearn.tile.searching import ModuleAnswer, run
 
 RING = {"schema": "simulearn.chart/1", "revolution": {"profile": [[80, 0], [78, 50]]}}
@@ -56,6 +57,20 @@ def pretended(job):
         off,
         off,
     )
+
+
+def slowly(job):
+    """Answer as pretended, after a while in which one can be killed."""
+    time.sleep(0.1)
+    return pretended(job)
+
+
+def wavy():
+    """A patch of six modules that are all different."""
+    chart = heights(
+        lambda x, y: 25 * np.cos(x / 90 + 0.3) * np.cos(y / 80), (-90.0, 90.0), (-60.0, 60.0)
+    )
+    return from_chart(chart, (3, 2), (1, 1))
 
 
 def command(*words):

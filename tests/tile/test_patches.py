@@ -39,7 +39,7 @@ def test_parameters_go_along_the_surface_evenly():
     assert counted(steep, 100.0) == (5, 1)
 
 
-def test_between_two_edges_it_begins_and_ends_at_them_in_the_directions_asked_for():
+def test_between_two_edges_it_begins_and_ends_at_them_in_the_given_directions():
     first, second = [[0, 0, 0], [100, 0, 0]], [[100, 200, 30], [0, 200, 30]]
     ruled, led = between(first, second), between(first, second, [0, 100, 100], None)
     u = np.linspace(0, 1, 5)
@@ -59,15 +59,19 @@ def test_between_two_edges_it_begins_and_ends_at_them_in_the_directions_asked_fo
         ({"revolution": {"profile": [[1, 2]]}}, "revolution.profile is [[1, 2]]"),
         ({"revolution": {"profile": [[0, 0], [50, 50]]}}, "profile[0] has the radius 0"),
         ({"revolution": {"profile": CONE, "degrees": 400}}, "it is more than 0 and at most 360"),
-        ({"revolution": {"profile": CONE, "turns": 1}}, "revolution.turns is not a key here"),
+        (
+            {"revolution": {"profile": CONE, "turns": 1}},
+            "is not a key here; the keys are profile, degrees",
+        ),
         ({"heights": {"z": "x^2", "x": [0, 1], "y": [0, 1]}}, "a power is written **"),
         ({"heights": {"z": "x", "x": [1, 0], "y": [0, 1]}}, "it is [from, to] in mm"),
         ({"heights": {"z": [[1, 2]], "x": [0, 1], "y": [0, 1]}}, "z is 1 x 2 numbers"),
+        ({"heights": {"z": [[1, 2], [3]], "x": [0, 1], "y": [0, 1]}}, "z is no table; each row"),
         ({"between": {"first": [[0, 0, 0], [0, 0, 0]], "second": [[0, 1, 0], [1, 1, 0]]}}, "twice"),
         ({"between": {"first": [[0, 0, 0], [1, 0, 0]]}}, "between.second is missing"),
     ],
 )
-def test_wrong_surfaces_are_told_by_key(part, where):
+def test_wrong_surfaces_are_reported_by_key(part, where):
     def points():
         chart = chart_from_dict({"schema": "simulearn.chart/1", **part})
         return chart.at(np.zeros(1), np.zeros(1))
@@ -88,7 +92,7 @@ def test_a_table_of_heights_is_smooth_through_its_values():
     np.testing.assert_allclose(points[:, 2], [20.0, 22.5], atol=1e-9)
 
 
-def test_what_is_missing_or_too_much_is_told(tmp_path):
+def test_what_is_missing_or_too_much_is_reported(tmp_path):
     path = tmp_path / "cone.json"
     data = {"schema": "simulearn.chart/1", "revolution": {"profile": CONE}}
     path.write_text(json.dumps(data), encoding="utf-8")

@@ -71,13 +71,51 @@ def test_ply_is_read_in_its_forms(tmp_path, form):
     np.testing.assert_allclose(vertices[quads[1]], np.array(FLAT)[PAIR[1]])
 
 
+CORNERS = "v 0 0 0\nv 60 0 0\nv 60 60 0\nv 0 60 5\n"
+# A strip of twelve quads around a circle that turns by half a turn on its way.
+AROUND = 2 * np.pi * np.arange(12) / 12
+STRIP = "".join(
+    f"v {(150 + s * np.cos(a / 2)) * np.cos(a):f} {(150 + s * np.cos(a / 2)) * np.sin(a):f} "
+    f"{s * np.sin(a / 2):f}\n"
+    for a in AROUND
+    for s in (-40, 40)
+)
+STRIP += "".join(f"f {k} {k + 1} {k + 3} {k + 2}\n" for k in range(1, 23, 2)) + "f 23 24 1 2\n"
+
+
+def test_quads_there_twice_and_apart_are_told(tmp_path):
+    path = tmp_path / "drawn.obj"
+    beside = "v 60.01 0 0\nv 120 0 0\nv 120 60 0\nv 60.01 60 0\n"  # but for a hundredth
+    path.write_text(CORNERS + beside + "f 1 2 3 4\nf 4 3 2 1\nf 5 6 7 8\n", encoding="utf-8")
+    tiling = read_tiling(path)
+    assert len(tiling.modules) == 2
+    assert np.isfinite(tiling.normals).all()
+    assert [message.code for message in tiling.warnings] == ["quads-twice", "quads-pieces"]
+
+
+def test_a_large_mesh_is_not_taken_for_one_drawn_by_hand(tmp_path):
+    path = tmp_path / "scan.obj"
+    path.write_text("v 0 0 0\n" + "f 1 1 1\n" * 100_002, encoding="utf-8")
+    assert read_quads(path) is None
+    path = tmp_path / "scan.ply"
+    path.write_text("ply\nformat ascii 1.0\nelement face 200000\n"
+                    "property list uchar int vertex_indices\nend_header\n")  # fmt: skip
+    assert read_quads(path) is None
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("v 0 0 0\nf 1 2 3 4\n", "is damaged, or no mesh file"),
         ("v 0 0 zero\n", "is damaged, or no mesh file"),
         ("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 1 2 3\n", "1 quads and 1 other faces"),
-        ("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nf 1 2 3 4\n", "quad 1 has no area"),
+        ("v 0 0 0\nv 10 0 0\nv 20 0 0\nv 30 0 0\nf 1 2 3 4\n", "quad 1 has no area"),
+        (CORNERS + "f 1 2 3 3\n", "quad 1 has two corners at one place"),
+        (CORNERS + "f 1 3 2 4\n", "quad 1 crosses itself or is bent inwards"),
+        (CORNERS + "v 40 20 0\nf 1 2 3 5\n", "quad 1 crosses itself or is bent inwards"),
+        (CORNERS + "v 1e300 0 0\nf 1 2 3 5\n", "no number below 1e+09"),
+        ("v 0 0 0\nv .1 0 0\nv .1 .1 0\nv 0 .1 0\nf 1 2 3 4\n", "say --unit m or --unit in"),
+        (STRIP, "the quads have one side only"),
     ],
 )
 def test_what_is_no_quad_mesh_is_one_line(tmp_path, text, words):

@@ -10,15 +10,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from modules import RING, command, here, pretended, ring
+from modules import RING, command, here, pretended, ring, wavy
 from PIL import Image
 
-from simulearn.assembly import read_assembly
+from simulearn.assembly import read_assembly, simulate_assembly
 from simulearn.dataset import cluster_workers
 from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.fabricate.bill import bill_of, bill_text
 from simulearn.grid import read_grid
-from simulearn.tile import Settings, between, from_chart, heights, tile
+from simulearn.simulate import engine
+from simulearn.tile import Settings, between, from_chart, from_quads, heights, tile
 from simulearn.tile.pieces import assembled, pieces, tiling_figures
 from simulearn.tile.searching import ModuleAnswer
 
@@ -48,7 +49,22 @@ def test_its_parts_are_where_its_joints_are(tiled):
     assert len(together.joined) == 10
     place = together.parts[3].place
     joints = place(np.array(tiled.answers[0].joints))
-    np.testing.assert_allclose(joints[tiled.members[3].order], tiled.fit.versions[3], atol=1e-9)
+    np.testing.assert_allclose(joints[tiled.members[3].order], tiled.fit.joints[3], atol=1e-9)
+
+
+def test_neighbours_lie_side_by_side(tiled):
+    assert tiled.settings.inset_mm == 3.6
+    together = assembled(tiled)
+    assert together.joined_mm < 1.5
+    shapes = simulate_assembly(together, engine("learned"))
+    assert shapes.collisions == ()
+    middles = tiled.beams
+    beams = tiled.tiling.lattice.beams
+    sides = [b for b in range(4) if abs(np.diff(tiled.tiling.lattice.joints[beams[b], 0])) < 0.1]
+    apart = np.linalg.norm(
+        middles[:, sides, None] - np.roll(middles, -1, 0)[:, None, sides], axis=-1
+    )
+    assert 6.0 < apart.min() < 8.4
 
 
 def test_a_bill_counts_copies(tiled):
@@ -81,17 +97,10 @@ def test_what_was_found_is_not_searched_again(tmp_path):
     assert len(seen) == 2 * count
 
 
-def shell():
-    chart = heights(
-        lambda x, y: 25 * np.cos(x / 90 + 0.3) * np.cos(y / 80), (-90.0, 90.0), (-60.0, 60.0)
-    )
-    return from_chart(chart, (3, 2), (1, 1))
-
-
 def test_borders_come_together_in_rounds_and_the_best_is_kept():
     stages = []
     result = tile(
-        shell(), replace(SMALL, gap_mm=0.05, rounds=3), None, here(pretended), stages.append
+        wavy(), replace(SMALL, gap_mm=0.05, rounds=3), None, here(pretended), stages.append
     )
     gaps = [gap for gap, _ in result.rounds]
     assert len(gaps) > 1
@@ -122,7 +131,7 @@ def test_a_cluster_searches_too():
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
     ) as cluster:
         team = cluster_workers(cluster.scheduler_address, work=pretended)
-        result = tile(shell(), replace(SMALL, rounds=0), None, team)
+        result = tile(wavy(), replace(SMALL, rounds=0), None, team)
     assert len(result.answers) == len(result.grids) > 1
 
 
@@ -155,9 +164,12 @@ def test_without_finite_elements_it_is_said(tiled):
     assert [message.code for message in result.warnings] == ["tile-unchecked"]
 
 
-def test_modules_of_a_wrong_size_are_told_with_the_right_one():
-    with pytest.raises(InputError, match=r"beams of 20 to 100 mm are learnt\. Modules of about"):
+def test_modules_of_a_wrong_size_are_reported_with_the_right_one():
+    with pytest.raises(InputError, match=r"learnt\. Modules of about .*: --size"):
         tile(ring(3), SMALL, None, here())
+    corners = np.array([[0.0, 0, 0], [300, 0, 0], [300, 300, 0], [0, 300, 0]])
+    with pytest.raises(InputError, match="draw quads of that size, or give --cells"):
+        tile(from_quads(corners, np.array([[0, 1, 2, 3]]), (2, 2)), SMALL, None, here())
     with pytest.raises(InputError, match="is too slow to tile with"):
         tile(ring(), replace(SMALL, engine="fea"), None, here())
 
@@ -169,8 +181,8 @@ def test_an_answer_that_is_worse_is_not_taken():
             return answer
         return replace(answer, joints=(2 * np.array(answer.joints)).tolist())
 
-    first = tile(shell(), replace(SMALL, rounds=0), None, here(pretended))
-    result = tile(shell(), replace(SMALL, gap_mm=1e-6, rounds=2), None, here(worse))
+    first = tile(wavy(), replace(SMALL, rounds=0), None, here(pretended))
+    result = tile(wavy(), replace(SMALL, gap_mm=1e-6, rounds=2), None, here(worse))
     assert result.fit.gap_mm == first.fit.gap_mm
 
 
@@ -204,13 +216,14 @@ def test_the_command_is_killed_and_goes_on_and_writes_all(tmp_path, run):
 
 
 def test_wrong_words_are_one_line(tmp_path, run):
-    surface = tmp_path / "ring.json"
+    surface = tmp_path / "tile.json"
     surface.write_text(json.dumps(RING), encoding="utf-8")
     for words, part in (
         (["--modules", "five"], '--modules is "five"; it is two numbers such as 5x3'),
         (["--modules", "8x1", "--scheduler", "x", "--workers", 1], "--workers is for this machine"),
         (["--modules", "8x1", "--material", tmp_path / "no.toml"], "there is no such file"),
         ([], "say how many modules"),
+        (["--modules", "8x1", "-o", tmp_path], "tile.json: is what is read, and would be replaced"),
     ):
         code, _, errors = run("tile", surface, "-o", tmp_path / "out", *words)
         assert code == 1

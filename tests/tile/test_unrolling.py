@@ -1,4 +1,4 @@
-"""Triangle meshes: patches and tubes get parameters; what has none is told."""
+"""Triangle meshes: patches and tubes get parameters; what has none is reported."""
 
 import numpy as np
 import pytest
@@ -81,6 +81,6 @@ def test_a_bent_tube_has_no_axis_and_is_tiled_all_the_same():
     ],
     ids=["ball", "ring", "two"],
 )
-def test_what_is_neither_is_told(mesh, words):
+def test_what_is_neither_is_reported(mesh, words):
     with pytest.raises(InputError, match=words):
         unrolled(surface_of(mesh.vertices, mesh.faces))

@@ -118,9 +118,13 @@ def simulated(
         for one in outcomes
     ]
     by_grid = dict(zip(first, kept, strict=True))
-    mended = tuple(message for surface in around.values() for message in surface.warnings)
+    mended = [message for surface in around.values() for message in surface.warnings]
+    for name, surface in around.items():
+        if not surface.closed:
+            text = f"obstacle {name} is no closed body; only what meets its faces is seen"
+            mended.append(Message("surface-open", name, text))
     parts = tuple(by_grid[k] for k in distinct)
-    return Assembled(assembly, engine.name, parts, around, warnings=mended)
+    return Assembled(assembly, engine.name, parts, around, warnings=tuple(mended))
 
 
 def checked(

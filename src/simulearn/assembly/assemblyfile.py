@@ -4,7 +4,6 @@ Grids and obstacles are named by paths from the folder of the file.
 """
 
 import json
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -22,7 +21,7 @@ from simulearn.assembly.assembly import (
     wrong,
 )
 from simulearn.errors import InputError
-from simulearn.files import parse_json, read_text, replacing
+from simulearn.files import parse_json, path_from, read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict, read_grid
 from simulearn.grid.arrays import shown
 from simulearn.rigid import Place
@@ -199,7 +198,7 @@ def assembly_to_dict(assembly: Assembly, folder: Path) -> dict[str, Any]:
     for part in assembly.parts:
         grid = None
         if part.copy_of is None:
-            grid = grid_to_dict(part.grid) if part.file is None else _from(folder, part.file)
+            grid = grid_to_dict(part.grid) if part.file is None else path_from(folder, part.file)
         own = {"copy_of": part.copy_of} if grid is None else {"grid": grid}
         data["parts"].append({"name": part.name, **own, "place": _written(part.place)})
     data["steps"] = []
@@ -209,7 +208,7 @@ def assembly_to_dict(assembly: Assembly, folder: Path) -> dict[str, Any]:
         sliding = {"slide": slides, "sliding": step.sliding} if slides else {}
         data["steps"].append(entry | sliding)
     data["obstacles"] = [
-        {"name": one.name, "file": _from(folder, one.file), "place": _written(one.place)}
+        {"name": one.name, "file": path_from(folder, one.file), "place": _written(one.place)}
         | ({} if one.unit is None else {"unit": one.unit})
         for one in assembly.obstacles
     ]
@@ -266,14 +265,6 @@ def _path(name: str, folder: Path | None, where: str) -> Path:
     if folder is None:
         raise wrong(where, "is a path; here a grid is an object, and there are no obstacles")
     return folder / name
-
-
-def _from(folder: Path, path: Path) -> str:
-    """Return a path from a folder, with slashes; on another drive the whole path."""
-    try:
-        return Path(os.path.relpath(path, folder)).as_posix()
-    except ValueError:
-        return path.resolve().as_posix()
 
 
 def _placed(entry: PlaceEntry, where: str) -> Place:

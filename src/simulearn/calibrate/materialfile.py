@@ -1,7 +1,7 @@
 """The fitted material as a file: the base's own text and comments, with numbers put in place.
 
 The base's file is kept line by line, since its comments say where its numbers come from. A line
-with a number that was fitted or not told has a comment of its own: value, interval, base.
+with a number that was fitted or left undetermined has a comment of its own: value, interval, base.
 """
 
 import re

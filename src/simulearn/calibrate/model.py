@@ -1,7 +1,7 @@
 """What a material's numbers make of all strips of a plate, and how that changes with them.
 
 All members of the family that a derivative takes go to one call for each strip. How large the plate
-was printed is a number of its own, told by the lengths before the bath: beams are longer than
+was printed is a number of its own, determined by the lengths before the bath: beams are longer than
 designed by one factor, near one, by which the strips' chords and rises change linearly.
 """
 

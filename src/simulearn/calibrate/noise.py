@@ -34,7 +34,7 @@ class Noise(NamedTuple):
     Attributes:
         reading: standard deviation of a reading, mm.
         scatter: relative standard deviation of the released strain from strip to strip.
-        low, high: interval of 90 % of the scatter; it is not told from none where low is 0.
+        low, high: interval of 90 % of the scatter; it is not distinct from none where low is 0.
         freedom: degrees of freedom that the reading error is known by.
     """
 
@@ -62,7 +62,7 @@ def estimate(readings: list[Numbers], slopes: list[Numbers], lengths: list[Numbe
     Args:
         readings: for each strip (R, 2) chord and rise, mm, NaN where blank.
         slopes: for each strip (2,) their derivatives by the relative strain, mm.
-        lengths: for each strip (R,) lengths before, mm, NaN where blank; of these only s is told.
+        lengths: for each strip (R,) lengths before, mm, NaN where blank; these determine s only.
     """
     spread = [
         (one - one.mean(axis=0), slope)

@@ -1,8 +1,8 @@
 """What gives a photo its scale: the printed sheet, or two points whose distance is known.
 
-Both give a camera over the sheet on which the strip stands. How wrong it may be is told by other
-cameras that are as likely: of the sheet by the deviations of its markers, of two points by what is
-not known at all, above all how far the camera was from straight above.
+Both give a camera over the sheet on which the strip stands. How wrong it may be is estimated from
+other cameras that are as likely: of the sheet by the deviations of its markers, of two points by
+what is not known at all, above all how far the camera was from straight above.
 """
 
 import re

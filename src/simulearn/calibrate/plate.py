@@ -3,7 +3,7 @@
 Which strips tell what follows from the singular values of all measurements' sensitivity to the
 family's parameters (docs/howto/calibrate.md). Strips with an actuator tell the active strain; both
 signs tell it from the print's own curl. What is long sags, which tells weight over stiffness. The
-joints' strain is told by a chain of short beams, a third of which is joints. All differ in length,
+joints' strain comes from a chain of short beams, a third of which is joints. All differ in length,
 so that none is taken for another one.
 """
 

@@ -25,7 +25,8 @@ def answers_table(answers: "Sequence[Answer]") -> Table:
     heads = ["", "by finite elements, mm", "by the engine, mm", "actuators", "their length, mm"]
     of_prints = any(one.share is not None for one in answers)
     heads += [f"print by {answers[0].printer or 'a printer'}", *["prints within"] * of_prints]
-    for head in [*heads, "differs by"]:
+    collide = any(one.collides for one in answers)
+    for head in [*heads, "differs by", *["collides"] * collide]:
         table.add_column(head, justify="right")
     for k, one in enumerate(answers, 1):
         fea, seconds = one.check.error_fea_mm, one.print_seconds
@@ -38,6 +39,7 @@ def answers_table(answers: "Sequence[Answer]") -> Table:
             "not known" if seconds is None else f"{seconds / 60:.0f} min",
             *([share_words(one.probability)] if of_prints else []),
             "" if one.nearest is None else f"{one.nearest:.2f}",
+            *([("yes" if one.collides else "no")] if collide else []),
         )
     return table
 

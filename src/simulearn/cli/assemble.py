@@ -1,6 +1,7 @@
 """The command assemble: parts put together in their order, checked and drawn."""
 
 import json
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +12,7 @@ from rich.table import Table
 from simulearn.cli.base import Json, app, err, out, print_files, warn
 from simulearn.cli.grids import ModelOption
 from simulearn.cli.progress import counting, preparing
+from simulearn.errors import InputError
 
 if TYPE_CHECKING:
     from simulearn.assembly import Assembled
@@ -53,9 +55,14 @@ def assemble(
     from simulearn.show import Camera
     from simulearn.simulate import engine as engine_of
 
+    if not all(map(isfinite, view)):
+        raise InputError(f"--view is {view[0]:g} {view[1]:g}; it is two angles in degrees")
     files = output or []
     outputs.check(files, file, outputs.ASSEMBLED)
     assembly = read_assembly(file)
+    grids = [part.file for part in assembly.parts if part.file is not None]
+    for path in files:
+        outputs.check_place(path, [*grids, *(one.file for one in assembly.obstacles)])
     answering = engine_of(engine, model, mesh)
     with preparing(quiet=as_json):
         with counting("frames", quiet=as_json) as progress:

@@ -1,8 +1,10 @@
 """What all commands share: the application, its consoles, and how a grid is named."""
 
 import json
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -114,6 +116,27 @@ def folder_of(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{path}: cannot be made ({error.strerror})") from error
+
+
+def keep_sources(folder: Path, names: Sequence[str], sources: Sequence[Path]) -> None:
+    """Make sure that no file which is read will be written over.
+
+    Args:
+        folder: into which files are written.
+        names: of these, with * as in a shell.
+        sources: files that are read.
+
+    Raises:
+        InputError: one of them is in the folder and has such a name.
+    """
+    for source in sources:
+        place = Path(os.path.realpath(source))
+        if place.parent == Path(os.path.realpath(folder)) and any(
+            fnmatch(place.name, name) for name in names
+        ):
+            raise InputError(
+                f"{source}: is what is read, and would be replaced; name another folder"
+            )
 
 
 def write_json(path: Path, data: dict[str, Any]) -> None:

@@ -60,7 +60,7 @@ def import_(
     material: Annotated[str, typer.Option(help="Name of the material.")] = "pla-hot-water",
     as_json: Annotated[bool, typer.Option("--json", help="Print the machine form.")] = False,
 ) -> None:
-    """Make a grid of a drawing: mended, with all that was mended and left out told."""
+    """Make a grid of a drawing: mended, with a report of all that was mended and left out."""
     from simulearn.drawings.importing import Options, imported
     from simulearn.drawings.units import UnitError
 

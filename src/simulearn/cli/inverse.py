@@ -16,6 +16,7 @@ from simulearn.cli.base import (
     err,
     folder_of,
     grid_of,
+    keep_sources,
     of_material,
     out,
     print_files,
@@ -33,9 +34,15 @@ from simulearn.cli.search_report import (
 from simulearn.errors import ComputationError, InputError
 from simulearn.files import read_text, replacing
 from simulearn.grid import library, write_grid
+from simulearn.outputs import check_place
 
 if TYPE_CHECKING:
     from simulearn.inverse import Step, Task
+
+WRITTEN = (
+    *("best.json", "summary.json", "search.json", "history.csv", "error.png", "shape.png"),
+    *("shape.3dm", "changing.gif", "answers.json", "answers.png", "answer-*.json"),
+)
 
 EngineOption = Annotated[
     str | None, typer.Option(help="Another engine than the task's: fea, calculix, beams, learned.")
@@ -46,7 +53,7 @@ ToleranceOption = Annotated[
         min=1e-6,
         metavar="MM",
         help="How far a print may be from goals that say nothing of it: with what probability it "
-        "is nearer is told.",
+        "is nearer is reported.",
     ),
 ]
 ModelOption = Annotated[
@@ -125,6 +132,7 @@ def optimize(
     )
     machine = load_printer(printer) if printer else None
     folder = output or Path("searches") / Path(task).stem
+    keep_sources(folder, WRITTEN, [Path(task), *wanted.files])
     folder_of(folder)
     name = identity(wanted, model)
     past = Past() if afresh else read_past(folder, name)
@@ -210,6 +218,7 @@ def rank(
     for path in files:
         if path.suffix.lower() not in (".png", ".pdf", ".svg", ".json"):
             raise InputError(f"{path}: the ending is not one of .png .pdf .svg .json")
+        check_place(path, [Path(design)])
     task = _of_material(read_task(design, paths=True), material) if _is_task(design) else None
     name = engine or (task.engine if task else "learned")
     simulator = engine_of(name, model)

@@ -72,7 +72,7 @@ def run() -> None:
     try:
         code = app(standalone_mode=False)  # of typer.Exit; it makes an interrupt one of 130
         if sys.stdout is not None:
-            sys.stdout.flush()  # what cannot be written is told now and not at Python's end
+            sys.stdout.flush()  # what cannot be written is reported now and not at Python's end
     except (typer.Abort, KeyboardInterrupt):
         code = 130
     except InputError as error:

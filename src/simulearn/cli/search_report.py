@@ -78,17 +78,17 @@ def _design_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[s
 
 def _print_words(result: "SearchResult") -> Iterator[str]:
     """Yield how often prints meet the goals, where that was computed."""
-    told, before = result.probability, result.nominal
-    if told is None:
+    probability, before = result.probability, result.nominal
+    if probability is None:
         return
-    yield f"prints: [bold]{told.words}[/]"
-    if before is not None and told is before:
+    yield f"prints: [bold]{probability.words}[/]"
+    if before is not None and probability is before:
         yield (
             "[yellow]no robust design was found:[/] prints of the best one meet the goals as often"
         )
     elif before is not None:
         yield f"of the best design without regard to prints: {before.words}"
-    rows = zip(result.goals.names, told.goals, told.tolerances, strict=True)
+    rows = zip(result.goals.names, probability.goals, probability.tolerances, strict=True)
     for k, (name, share, most) in enumerate(rows):
         if share is not None:
             yield f"  goal {k} ({name}): {100 * share:.0f} % within {most:g} mm"
@@ -219,11 +219,11 @@ def ranking_table(ranking: "Ranking", goals: bool) -> Table:
     return table
 
 
-def share_words(told: "Probability | None") -> str:
+def share_words(probability: "Probability | None") -> str:
     """Return how many prints are within all tolerances."""
-    if told is None or told.together is None:
+    if probability is None or probability.together is None:
         return "not known"
-    return f"{100 * told.together:.0f} %"
+    return f"{100 * probability.together:.0f} %"
 
 
 @contextmanager

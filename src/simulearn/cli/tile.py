@@ -10,7 +10,7 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn.cli.base import Json, app, err, folder_of, out, warn, write_json
+from simulearn.cli.base import Json, app, err, folder_of, keep_sources, out, warn, write_json
 from simulearn.cli.progress import bar, counting, preparing
 from simulearn.errors import InputError
 from simulearn.files import replacing
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from simulearn.fabricate.bill import Row
     from simulearn.tile import Stage, Tiled
     from simulearn.tile.pieces import Piece
+
+
+WRITTEN = ("assembly.*", "deviation.png", "bill.csv", "tile.json")
 
 
 @app.command("tile")
@@ -59,6 +62,16 @@ def tile_(
     rounds: Annotated[
         int, typer.Option(min=0, help="In which borders are brought together, at most.")
     ] = 3,
+    inset: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            max=50,
+            metavar="MM",
+            help="How far modules keep from their borders; by default half the width of a beam, "
+            "so that beams of neighbours lie side by side.",
+        ),
+    ] = None,
     alike: Annotated[
         float,
         typer.Option(min=0.0, metavar="MM", help="Modules that differ by less are one design."),
@@ -100,9 +113,12 @@ def tile_(
     count = None if modules is None else _pair(modules, "--modules", "5x3")
     own = _pair(cells, "--cells", "2x2")
     tiling = read_tiling(surface, count, size, own, unit, onto)
+    sources = [Path(name) for name in (surface, onto, material) if name is not None]
+    keep_sources(output, WRITTEN, sources)
     settings = Settings(
         alike_mm=alike,
         gap_mm=gap,
+        inset_mm=inset,
         rounds=rounds,
         seconds=seconds,
         engine=engine,
@@ -119,6 +135,9 @@ def tile_(
     try:
         with preparing(quiet=as_json), _stages(quiet=as_json) as progress:
             tiled = tile(tiling, settings, output, team, progress)
+    except InputError:
+        warn(tiling.warnings)  # they may say why
+        raise
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise

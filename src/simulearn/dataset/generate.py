@@ -102,7 +102,7 @@ class Folder:
         return self.path / "failures" / f"{key}.json"
 
     def state(self, key: str) -> Literal["done", "failed", "torn", "missing"]:
-        """Return what is there of a design; a torn file is as good as none, but is told."""
+        """Return what is there of a design; a torn file is as good as none, but is reported."""
         if is_whole(self.trial(key)):
             return "done"
         if self.why(key) is not None:

@@ -185,7 +185,7 @@ class _Cluster:
             self.check()
             sleep(0.2)
         ours = f"{__version__}, solver {SOLVER_VERSION}"
-        theirs = self._asked(lambda: self._client.run(_version(), on_error="return"))
+        theirs = self._request(lambda: self._client.run(_version(), on_error="return"))
         for worker, answer in theirs.items():
             if answer != ours:
                 has = "no SimuLearn that works" if isinstance(answer, BaseException) else answer
@@ -197,12 +197,12 @@ class _Cluster:
 
     def submit(self, job: Any) -> "Future[Any]":
         """Give a job to a worker."""
-        future: Future[Any] = self._asked(lambda: self._executor.submit(self._work, job))
+        future: Future[Any] = self._request(lambda: self._executor.submit(self._work, job))
         return future
 
     def count(self) -> int:
         """Return how many threads of workers there are."""
-        threads = self._asked(lambda: sum(self._client.nthreads().values()))
+        threads = self._request(lambda: sum(self._client.nthreads().values()))
         if threads:
             self._last = monotonic()
         return int(threads)
@@ -216,7 +216,7 @@ class _Cluster:
                 hint=f"start some: dask worker {self._address}",
             )
 
-    def _asked(self, question: Callable[[], Any]) -> Any:
+    def _request(self, question: Callable[[], Any]) -> Any:
         """Return what the scheduler answers."""
         try:
             if self._client.status in ("closed", "closing"):

@@ -1,1 +1,1 @@
-"""Drawings of other programs: read, mended and made into a grid, with every step told."""
+"""Drawings of other programs: read, mended and made into a grid, with every step reported."""

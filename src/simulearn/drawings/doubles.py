@@ -132,8 +132,8 @@ def _fitted(ends: Numbers, group: Indices, heft: Numbers) -> tuple[Numbers, Numb
     angle = np.arctan2(2 * xy, xx - yy) / 2
     axis = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     apart = ends - centre[group][:, None]
-    way, normal = axis[group][:, None], np.stack([-axis[:, 1], axis[:, 0]], axis=1)[group][:, None]
-    place, aside = (apart * way).sum(axis=2), abs((apart * normal).sum(axis=2)).max(axis=1)
+    main, normal = axis[group][:, None], np.stack([-axis[:, 1], axis[:, 0]], axis=1)[group][:, None]
+    place, aside = (apart * main).sum(axis=2), abs((apart * normal).sum(axis=2)).max(axis=1)
     low, high = np.full(count, np.inf), np.full(count, -np.inf)
     np.minimum.at(low, group, place.min(axis=1))
     np.maximum.at(high, group, place.max(axis=1))

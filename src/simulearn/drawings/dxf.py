@@ -38,7 +38,7 @@ def read_dxf(data: bytes) -> Drawing:
     found, messages = document(data)
     walk = Walk(found)
     try:
-        with np.errstate(all="ignore"):  # numbers that are none are told
+        with np.errstate(all="ignore"):  # numbers that are none are reported
             walk.run()
     except InputError:
         raise

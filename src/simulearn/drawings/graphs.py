@@ -48,7 +48,7 @@ def edges_of(
     Args:
         parts: the object, its keys in lower case.
         points: reads the places of nodes.
-        messages: what is to be told is added.
+        messages: what is to be reported is added.
         inside: where the object is, with a point at its end.
 
     Raises:

@@ -1,4 +1,4 @@
-"""From a drawing to a grid: layers, unit, plane, mends and actuators; every step is told."""
+"""From a drawing to a grid: layers, unit, plane, mends and actuators; every step is reported."""
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
@@ -67,7 +67,7 @@ class Options:
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """A grid from a drawing, and all that is to be told about the way.
+    """A grid from a drawing, and a report of every step to it.
 
     Attributes:
         grid: without dangling beams, unless nothing else is left or they were to stay.
@@ -136,7 +136,7 @@ def grid_of(drawing: Drawing, options: Options | None = None) -> Imported:
     if lines and curves:  # chords of curves are no beams to judge a size by
         size = replace(size, beam=measured(_polylines(lines, [], None)).beam)
     unit, tolerance, odd_size = _unit(drawing, size, options)
-    messages = [_unit_told(unit, size), *odd_size, *messages, *ratio_messages]
+    messages = [_unit_message(unit, size), *odd_size, *messages, *ratio_messages]
     chords = None if flatten is None else flatten / unit.mm
     points = [unit.mm * points for points in _polylines(lines, curves, chords)]
     plane, turned = _in_plane(points, tolerance, options.without)
@@ -258,7 +258,7 @@ def _unit(drawing: Drawing, size: Size, options: Options) -> tuple[Unit, float, 
     return unit, tolerance, warnings
 
 
-def _unit_told(unit: Unit, size: Size) -> Message:
+def _unit_message(unit: Unit, size: Size) -> Message:
     width, height = unit.mm * size.width, unit.mm * size.height
     text = f"the unit is {unit.mm:.6g} mm" if unit.name == "unit" else f"the unit is {unit.name}"
     measure = f"the drawing is {width:.4g} x {height:.4g} mm"

@@ -23,7 +23,7 @@ from simulearn.drawings.pieces import EXACT, neighbours, pieces_of
 Numbers = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-# What is done to a drawing, by code, in the order in which it is told.
+# What is done to a drawing, by code, in the order in which it is reported.
 MENDS = (
     "plane",
     "flattened",

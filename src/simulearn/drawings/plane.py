@@ -52,8 +52,8 @@ def in_plane(points: Numbers, level: float) -> Plane:
     apart = points - points.mean(axis=0)
     size, axes = np.linalg.eigh(apart.T @ apart)
     if size[1] <= 1e-18 * size[2]:  # one straight line: of its planes the least steep
-        level_way = np.cross([0.0, 0.0, 1.0], axes[:, 2])
-        normal = np.cross(axes[:, 2], level_way) if level_way.any() else np.array([0.0, -1.0, 0.0])
+        flat = np.cross([0.0, 0.0, 1.0], axes[:, 2])
+        normal = np.cross(axes[:, 2], flat) if flat.any() else np.array([0.0, -1.0, 0.0])
     else:
         normal = axes[:, 0]
     normal = _towards_the_viewer(normal / np.linalg.norm(normal))

@@ -23,7 +23,7 @@ class Points:
         self.texts = 0
 
     def remarks(self) -> list[str]:
-        """Return what is to be told about what was read."""
+        """Return messages about what was read."""
         if not self.texts:
             return []
         what = "1 number is" if self.texts == 1 else f"{self.texts} numbers are"

@@ -77,7 +77,7 @@ class Mend:
 
 
 def mend(code: str, places: NDArray[np.float64], more: str = "") -> Mend:
-    """Return what is told of a mend at places (n, 2) mm, with more to say about it."""
+    """Return the message of a mend at places (n, 2) mm, with more to say about it."""
     count = len(places)
     text = SENTENCES[code][count > 1].format(count)
     spots = tuple((x, y) for x, y in (places.round(3) + 0.0).tolist())

@@ -29,7 +29,7 @@ def read_3dm(data: bytes) -> Drawing:
     """
     model = contents(data)
     walk = _Walk(model)
-    with np.errstate(all="ignore"):  # numbers that are none are told
+    with np.errstate(all="ignore"):  # numbers that are none are reported
         walk.run()
     system = model["unit"]
     named = rhino_unit(system, f"the file's unit is {system}")

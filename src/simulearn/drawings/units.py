@@ -49,15 +49,15 @@ GUESSES = ("mm", "cm", "m", "in", "px", "pt", "ft", "um")
 
 
 class UnitError(InputError):
-    """The unit of a drawing is not known, or its size is odd; a person must say.
+    """The unit of a drawing or surface is not known, or its size is odd; a person must say.
 
     Args:
         text: what the file says, and the guess.
         guess: the likely unit; None if none is.
-        size: width and height of the drawing in units of the file.
+        size: width and height of the drawing (and depth of a surface) in units of the file.
     """
 
-    def __init__(self, text: str, guess: Unit | None, size: tuple[float, float]) -> None:
+    def __init__(self, text: str, guess: Unit | None, size: tuple[float, ...]) -> None:
         super().__init__(text, "unit-unknown", "unit")
         self.guess, self.size = guess, size
 

@@ -178,7 +178,7 @@ class _Report:
     """Reports the frames of a trial, and before it those of its guide.
 
     Args:
-        progress: is told.
+        progress: receives the reports.
         guided: whether there is a guide.
     """
 

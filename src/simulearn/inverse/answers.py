@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 Added = tuple[Check, Probability | None, list[Message]]
 
-PRINTER = "prusa-mk4"  # whose print times are told where no printer is named
+PRINTER = "prusa-mk4"  # whose print times are given where no printer is named
 SLACK = 0.015  # of the dimension, by which another answer may be worse than the best
 FAR = 3.0  # times that, where there are not enough; it is said of them
 OFF = 2.0  # least distances, by which ratios drawn anew stay away from what is there
@@ -227,7 +227,9 @@ class _Several:
         )
         best = answers[0]
         if not search.task.robust:
-            best = min(answers, key=attrgetter("error"))
+            best = min(answers, key=attrgetter("collides", "error"))
+        for one in answers if search.task.robust else ():
+            best = one if one.more_robust_than(best) else best
         others = [one for one in answers if one is not best]
         if best is not answers[0]:  # beside which the first may be none any more
             most = self.good + FAR * self.slack
@@ -236,7 +238,7 @@ class _Several:
         return best.check, best.probability, [*warnings, *self._wanting()]
 
     def _wanting(self) -> list[Message]:
-        """Return warnings where there are fewer answers than wanted, or some are much worse."""
+        """Return warnings where there are fewer answers than wanted, or some are no good."""
         answers, count = self.search.answers, self.limits.answers
         more = "more seconds, or more that is free to change, may help"
         messages = []
@@ -247,6 +249,10 @@ class _Several:
         if far:
             text = f"answers {', '.join(far)} stay more than {self.good:.2f} mm away; {more}"
             messages.append(Message("answers-far", "limits.answers", text))
+        passing = [str(k) for k, one in enumerate(self.search.answers, 1) if one.collides]
+        if passing:
+            text = f"parts of answers {', '.join(passing)} run through each other: `collisions`"
+            messages.append(Message("answers-collide", "limits.answers", text))
         return messages
 
     def compared(self, checks: list[Check]) -> tuple[Answer, ...]:

@@ -33,6 +33,7 @@ class Check:
         phase: of the search that ended with this design.
         result: by the engine; None where it has no full rollout, or in an earlier run.
         fea: by finite elements; None where they give no answer, or in an earlier run.
+        passes: what an earlier run said of parts that run through each other.
     """
 
     grid: Grid
@@ -45,6 +46,7 @@ class Check:
     phase: int = 0
     result: Result | None = field(default=None, repr=False)
     fea: Result | None = field(default=None, repr=False)
+    passes: tuple[Message, ...] = ()
 
     @property
     def agrees(self) -> bool | None:
@@ -61,7 +63,7 @@ class Check:
     @property
     def collisions(self) -> tuple[Message, ...]:
         """The warning that parts of the shape run through each other, if they do."""
-        return () if self.shape is None else collision_warnings(self.shape.collisions)
+        return self.passes if self.shape is None else collision_warnings(self.shape.collisions)
 
     def better_than(self, other: "Check | None") -> bool:
         """Whether finite elements prefer this one, or it is the one without collisions."""

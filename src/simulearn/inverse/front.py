@@ -1,11 +1,12 @@
 """The answers of a search side by side: what each costs, and which of them no other beats in all.
 
 An answer is on the front if no other is at least as good in everything and better in something:
-error, probability that a print meets the goals, length of the actuators, time of the print.
+error, probability that a print meets the goals, length of the actuators, time of the print. Where
+there is one whose parts do not run through each other, those whose parts do are not on it.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,8 @@ class Answer:
         printer: by whose profile it is printed.
         print_seconds: that this takes, without heating; None where it is not known.
         probability: how often prints of it meet the goals, where the task asks anything of prints.
-        on_front: whether no other answer is as good in everything and better in something.
+        on_front: whether no other answer is as good in everything and better in something, and
+            parts of it do not run through each other, if there is such an answer.
     """
 
     check: Check
@@ -61,6 +63,11 @@ class Answer:
         return None if self.probability is None else self.probability.together
 
     @property
+    def collides(self) -> bool:
+        """Whether parts of its shape run through each other."""
+        return bool(self.check.collisions)
+
+    @property
     def costs(self) -> tuple[float, float, float, float]:
         """What of two answers the better one has less of; infinite where it is not known.
 
@@ -73,6 +80,13 @@ class Answer:
             np.inf if self.print_seconds is None else round(self.print_seconds / 60),
         )
 
+    def more_robust_than(self, other: "Answer") -> bool:
+        """Whether prints of it meet the goals more often, or it does not collide and other does."""
+        mine, known = self.probability, other.probability
+        if mine is None or self.collides > other.collides:
+            return False
+        return self.collides < other.collides or known is None or mine.better_than(known)
+
     @property
     def words(self) -> str:
         """What it takes, in a line."""
@@ -82,6 +96,8 @@ class Answer:
             parts.append(f"printed in {self.print_seconds / 60:.0f} min")
         if self.share is not None:
             parts.append(f"{100 * self.share:.0f} % of prints within tolerance")
+        if self.collides:
+            parts.append("parts run through each other")
         return ", ".join(parts)
 
     def to_dict(self) -> dict[str, Any]:
@@ -98,6 +114,7 @@ class Answer:
             "print_seconds": self.print_seconds and round(self.print_seconds, 1),
             "nearest": None if self.nearest is None else round(self.nearest, 4),
             "on_front": self.on_front,
+            "collisions": [asdict(message) for message in check.collisions],
             **({} if prints is None else {"probability": prints.to_dict()}),
             "grid": grid_to_dict(self.grid),
         }
@@ -126,7 +143,10 @@ def non_dominated(costs: Array) -> Mask:
 def on_front(answers: Iterable[Answer]) -> tuple[Answer, ...]:
     """Return answers with the mark of those that are on the front."""
     given = tuple(answers)
-    front = non_dominated(np.array([one.costs for one in given]))
+    clear = np.array([not one.collides for one in given])
+    clear |= not clear.any()
+    front = np.zeros(len(given), bool)
+    front[clear] = non_dominated(np.array([one.costs for one in given])[clear])
     return tuple(replace(one, on_front=bool(mark)) for one, mark in zip(given, front, strict=True))
 
 

@@ -15,11 +15,15 @@ from pydantic import (
 
 from simulearn.grid.arrays import whole
 
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
-Point = Annotated[list[float], Field(min_length=3, max_length=3)]
-Range = Annotated[list[float], Field(min_length=2, max_length=2)]
-Corners = Annotated[list[int], Field(min_length=3, max_length=3)]
+MOST = 1e6  # mm, or whatever a number is of; squares and sums of such numbers are finite
+
+Number = Annotated[float, Field(ge=-MOST, le=MOST)]
+Positive = Annotated[float, Field(gt=0, le=MOST)]
+NotNegative = Annotated[float, Field(ge=0, le=MOST)]
+Point = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Range = Annotated[list[Number], Field(min_length=2, max_length=2)]
+Corner = Annotated[int, BeforeValidator(whole), Field(ge=0, lt=2**31)]
+Corners = Annotated[list[Corner], Field(min_length=3, max_length=3)]
 
 # What a goal may want, and what it is wanted of.
 OF = {
@@ -121,7 +125,7 @@ class SurfaceFile(_Spoken):
     unit: str | None = None
     heights: (
         Annotated[
-            Annotated[str, Tag(WORDS)] | Annotated[list[list[float]], Tag(OBJECT)],
+            Annotated[str, Tag(WORDS)] | Annotated[list[list[Number]], Tag(OBJECT)],
             Discriminator(_kind),
         ]
         | None

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from simulearn.errors import InputError
+from simulearn.errors import InputError, Message
 from simulearn.files import read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.inverse.checking import Check
@@ -131,6 +131,7 @@ def _row(check: Check) -> dict[str, Any]:
         "grid": grid_to_dict(check.grid),
         **{name: getattr(check, name) for name in FIGURES},
         "shift": None if check.shift is None else check.shift.tolist(),
+        "collisions": [asdict(message) for message in check.collisions],
     }
 
 
@@ -140,4 +141,5 @@ def _check(row: dict[str, Any]) -> Check:
         grid=grid_from_dict(row["grid"], paths=True),
         **{name: row[name] for name in FIGURES},
         shift=None if shift is None else np.array(shift, dtype=float),
+        passes=tuple(Message(**one) for one in row.get("collisions", ())),
     )

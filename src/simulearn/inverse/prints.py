@@ -1,6 +1,6 @@
 """What follows a search whose task asks anything of prints: a probability, a robust design.
 
-The probability that a print meets the goals is told of the best design. A robust search then goes
+The probability that a print meets the goals stands with the best design. A robust search then goes
 on from there with a few prints of each design, and what it comes to is taken where more prints of
 it meet the goals, or as many and closer, by prints that the search has not seen.
 """
@@ -72,7 +72,8 @@ def regard_prints(search: Search, space: Space, goals: Goals, best: Check) -> Re
     if not search.task.robust:
         return best, nominal, None, warnings
     robust = _robust(search, space, goals, best, warnings)
-    if robust is not None and robust is not best:
+    passes = robust is not None and bool(robust.collisions) and not best.collisions
+    if robust is not None and robust is not best and not passes:
         other = probability_of(search, robust, goals, warnings)
         if other is not None and (nominal is None or other.better_than(nominal)):
             return robust, other, nominal, warnings
@@ -104,13 +105,15 @@ def _robust(
         space, goals, grid, known, search.engine, until, search.cancel, out_of_time
     )
     # An earlier run may have come further.
-    earlier = [step.grid(space.grid) for step in search.steps[-1:] if step.phase == ROBUST]
+    earlier = [step.grid(space.grid) for step in search.steps if step.phase == ROBUST]
     try:
-        scored = [problem.scored(*space.point(one)) for one in (grid, *earlier)]
+        scored = [problem.scored(*space.point(one)) for one in (grid, *earlier[-1:])]
     except (OutOfTime, CancelledError):
         stop_if(search.cancel)
         scored = []
     start = min(scored, key=attrgetter("error"), default=None)
+    if start is None and earlier:  # there is no time to go on from there
+        return search.known_check(earlier[-1])
     if start is None or not np.isfinite(start.error):
         why = "a print of the best design has no answer" if scored else "the time was over"
         text = f"no robust design was looked for: {why}; more seconds or another start may help"

@@ -19,6 +19,7 @@ UNITS = {"metres": 1000.0, "inches": 25.4, "centimetres": 10.0}
 # something speaks for it beforehand and where nothing does.
 FAR, VERY_FAR = 0.1, 0.5
 TINY = 0.05  # of the dimension; if all targets are nearer, they are perhaps in metres
+SMALL, LARGE = 0.1, 5.0  # likewise, below which a surface is perhaps in another unit; and likely
 
 
 def out_of_reach(grid: Grid, goals: Goals) -> list[Message]:
@@ -68,12 +69,12 @@ def _tiny_sets(grid: Grid, goals: Goals) -> list[Message]:
     """Return a warning for surfaces and curves that are hardly in mm."""
     messages = []
     for kind, shape in _sets(goals):
-        if isinstance(shape, Surface | Curve) and shape.size < TINY * grid.dimension:
+        if isinstance(shape, Surface | Curve) and shape.size < SMALL * grid.dimension:
             text = (
                 f"the {kind} is {shape.size:.3g} mm across, and the grid reaches "
                 f"{grid.dimension:.0f} mm"
             )
-            likely = _likely(shape.size, grid)
+            likely = _likely(shape.size, grid, LARGE)
             if likely:
                 text += f"; if its file is in {likely[0][0]}, say so by its key unit"
             messages.append(Message("targets-tiny", "goals", text))
@@ -102,12 +103,12 @@ def _sets(goals: Goals) -> list[tuple[str, Set]]:
     return list(each.values())
 
 
-def _likely(length: float, grid: Grid) -> list[tuple[str, float]]:
-    """Return the units in which a length would be about as long as a grid is."""
+def _likely(length: float, grid: Grid, most: float = SLACK) -> list[tuple[str, float]]:
+    """Return the units in which a length would be .3 to so many times as long as a grid is."""
     return [
         (name, factor)
         for name, factor in UNITS.items()
-        if LEAST * grid.dimension < factor * length < SLACK * grid.dimension
+        if LEAST * grid.dimension < factor * length < most * grid.dimension
     ]
 
 

@@ -36,7 +36,7 @@ from simulearn.inverse.reach import not_near, out_of_reach
 from simulearn.inverse.scoring import places_and_collisions
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import Limits, Task
-from simulearn.simulate import Simulator
+from simulearn.simulate import Result, Simulator
 from simulearn.simulate import engine as engine_of
 from simulearn.simulate.calls import warm
 from simulearn.simulate.learned import Learned
@@ -54,7 +54,9 @@ Method = Callable[[Problem, Scored], Iterator[Advance]]
 Progress = Callable[[Step], None]  # called with each step, as soon as it is done
 
 NOMINAL = 0.5  # of the limits of a robust search, before prints are looked at
-GOOD = 0.1  # mm, about the engine's own error; a search that came so far has done its work
+GOOD = 0.08  # mm; a search that came so far has done its work
+SURE = 0.6  # of the engine's bound, below which a check says more than further searching
+NEAR = 1.0  # mm, below which the engine is asked for its bound
 SEARCHING = 0.75  # of the time left goes into a search that corrections may follow
 WORTH = 0.1  # of the error, that a correction must promise
 GRACE = 10.0  # s beyond the deadline that the first check of a search may take, at most
@@ -100,7 +102,7 @@ def optimize(
         progress: called after each iteration with the step that was done, the best design in it.
         cancel: stops the search within an iteration.
         before: an earlier run, from which to go on.
-        printer: whose print times several answers are told with, or the name of one; a common one
+        printer: whose print times stand with several answers, or the name of one; a common one
             if not given.
 
     Raises:
@@ -141,8 +143,9 @@ class Search:
         self.archive: Archive | None = None
         self.answers: tuple[Answer, ...] = ()
         self.printer = printer
+        self._bounds: dict[bytes, float] = {}
         self._progress = progress
-        self._asked, self._begun = monotonic(), np.inf
+        self._created, self._begun = monotonic(), np.inf
         self.checking = CHECKING * len(task.grid["beams"])
 
     def run(self) -> SearchResult:
@@ -225,7 +228,7 @@ class Search:
             next(self.method(self.problem(space, goals, np.inf), start), None)
         # Reading the model and getting ready count, but the first time on a machine, which takes
         # longer than many searches, no more than half of the time.
-        ready = min(monotonic() - self._asked, self.task.limits.seconds / 2)
+        ready = min(monotonic() - self._created, self.task.limits.seconds / 2)
         self._begun = monotonic() - ready - (self.steps[-1].seconds if before else 0.0)
         if before is None:
             self.note(space, start, 0, 1, 0, "the design to begin with")
@@ -282,7 +285,7 @@ class Search:
                 now = problem.best
                 count = self.steps[-1].iteration + advance.complete
                 self.note(space, now, count, before + problem.designs, phase, advance.words)
-                if count >= most or now.error < GOOD:
+                if count >= most or now.error < self._enough(space, now, phase):
                     break
                 problem.going()
         except OutOfTime:
@@ -290,6 +293,21 @@ class Search:
         except CancelledError:  # within a simulation; by the deadline, or by the user
             stop_if(self.cancel)
         return problem.best
+
+    def _enough(self, space: Space, now: Scored, phase: int) -> float:
+        """Return the error (mm) of a design with which a phase ends.
+
+        Before the first check the engine's own error is in it, and is not worth fitting to.
+        """
+        known = isinstance(self.engine, Learned) and self.limits.corrections > 0
+        if phase != 0 or not known or now.error > NEAR:
+            return GOOD
+        key = now.x.tobytes() + now.a.tobytes()
+        if key not in self._bounds:
+            (outcome,) = self.engine.simulate([space.grid_at(now.x, now.a)], cancel=self.cancel)
+            bound = outcome.bound_mm if isinstance(outcome, Result) else None
+            self._bounds[key] = bound or 0.0
+        return max(GOOD, SURE * self._bounds[key])
 
     def known_check(self, grid: Grid) -> Check | None:
         """Return the check of a design, perhaps of an earlier run; None if there is none."""

@@ -1,7 +1,6 @@
 """The task file: a grid, goals, what may change, and how to search; JSON, `simulearn.task/1`."""
 
 import json
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -9,11 +8,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError
 
 from simulearn.errors import InputError, Message
-from simulearn.files import read_text, replacing
+from simulearn.files import parse_json, path_from, read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
-from simulearn.inverse.goalfile import FilePart, Goal, Positive
+from simulearn.inverse.goalfile import CurveFile, FilePart, Goal, Positive, SurfaceFile
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.tasktext import KEYS, MOST_ANSWERS, line_of, place_of
 from simulearn.inverse.wanting import Shapes, goals_of, rows_of
@@ -70,9 +69,9 @@ class Limits(FilePart):
         answers: how many designs that differ are wanted; several take up to thrice the seconds.
     """
 
-    iterations: Annotated[int, Field(ge=1)] = 1000
+    iterations: Annotated[int, Field(ge=1, lt=2**31)] = 1000
     seconds: Positive = 30.0
-    corrections: Annotated[int, Field(ge=0)] = 2
+    corrections: Annotated[int, Field(ge=0, lt=2**31)] = 2
     answers: Annotated[int, Field(ge=1, le=MOST_ANSWERS)] = 1
 
     @property
@@ -132,6 +131,14 @@ class Task(FilePart):
         return tuple(self._shapes.warnings)
 
     @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of surfaces and curves."""
+        here = self._shapes.folder or Path()
+        said = [one for goal in self.goals for one in (goal.surface, goal.curve, goal.away_from)]
+        names = [one.file for one in said if isinstance(one, SurfaceFile | CurveFile)]
+        return tuple(here / name for name in names if name is not None)
+
+    @property
     def shapes_digest(self) -> str:
         """SHA-256 of the surfaces and curves; "" where there are none."""
         return self._shapes.digest
@@ -168,14 +175,7 @@ def read_task(path: Path | str, *, paths: bool = False) -> Task:
     """
     try:
         folder = Path(path).parent if paths else None
-        return task_from_dict(json.loads(read_text(path)), paths=paths, folder=folder)
-    except json.JSONDecodeError as error:
-        place = f"line {error.lineno}, column {error.colno}"
-        raise InputError(
-            f"{path}: is not valid JSON at {place}: {error.msg}", "task", str(path)
-        ) from error
-    except RecursionError as error:
-        raise InputError(f"{path}: lists are nested too deeply", "task", str(path)) from error
+        return task_from_dict(parse_json(read_text(path)), paths=paths, folder=folder)
     except InputError as error:
         if isinstance(error.__cause__, OSError | UnicodeDecodeError):
             raise
@@ -203,9 +203,7 @@ def _moved_paths(data: dict[str, Any], task: Task, folder: Path) -> None:
         for key in ("surface", "curve", "away_from"):
             said = goal.get(key)
             if isinstance(said, dict) and "file" in said:
-                said["file"] = Path(
-                    os.path.relpath((here / said["file"]).resolve(), folder.resolve())
-                ).as_posix()
+                said["file"] = path_from(folder, here / said["file"])
 
 
 def task_to_dict(task: Task) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from pydantic import BaseModel
 
 from simulearn.grid.arrays import shown
 from simulearn.inverse.goalfile import (
+    MOST,
     OBJECT,
     WORDS,
     CurveFile,
@@ -23,9 +24,11 @@ KEYS = {
     "grid": "a grid is written as in a grid file",
     "goals": "goals are a list of at least one object with vertex, target, weight and others",
     "vertex": VERTEX,
-    "vertices": f'"joints", "beams", or a list of vertices: {VERTEX}; of triangles [x, y, z]',
+    "vertices": f'"joints", "beams", or a list of vertices: {VERTEX}',
+    "surface.vertices": "vertices of triangles are a list of [x, y, z], finite numbers in mm",
     "face": FACE,
-    "faces": f"a list of faces: {FACE}; of triangles three indices of vertices",
+    "faces": f"a list of faces: {FACE}",
+    "surface.faces": "faces of triangles are a list of three indices of vertices, counted from 0",
     "surface": "a surface is an object with file and unit, heights, x and y, or vertices and faces",
     "curve": "a curve is an object with file and unit, or points",
     "plane": "a plane is an object with point and normal, both [x, y, z]",
@@ -84,7 +87,10 @@ def line_of(error: Any, task: type[BaseModel]) -> str:
     if not place:
         return f"is {shown(value)}; a task is an object with the keys {_keys(task)}"
     names = [k for k in place if isinstance(k, str)]
-    hint = KEYS.get(names[-1], "")
+    of_triangles = names[-2:-1] in (["surface"], ["away_from"])
+    hint = (of_triangles and KEYS.get(f"surface.{names[-1]}")) or KEYS.get(names[-1], "")
+    if MOST in {abs(error.get("ctx", {}).get(limit, 0)) for limit in ("le", "ge")}:
+        hint += f"; none is more than {MOST:,.0f}"
     if error["type"] == "missing":
         return f"{where} is missing; {hint}"
     if error["type"] == "extra_forbidden":

@@ -24,7 +24,7 @@ from simulearn.surfaces import (
     Curve,
     Plane,
     Surface,
-    mended,
+    mended_surface,
     read_curve,
     read_surface,
     surface_of_heights,
@@ -70,7 +70,8 @@ class Shapes:
         if where not in self.found:
             given = [name for name in ("file", "heights", "vertices") if getattr(said, name)]
             if len(given) != 1:
-                text = f"{where} has one of file, heights, and vertices with faces"
+                has = " and ".join(given) or "no shape"
+                text = f"{where} has {has}; it has one of file, heights, and vertices with faces"
                 raise InputError(text, "task", where)
             surface = self._read(where, lambda: self._surface(said, given[0], where))
             self.found[where] = surface.placed(_place(said.place, f"{where}.place"))
@@ -82,7 +83,9 @@ class Shapes:
         """Return a curve in its place; raises as `surface` does."""
         if where not in self.found:
             if (said.file is None) == (said.points is None):
-                raise InputError(f"{where} has one of file and points", "task", where)
+                has = "no shape" if said.file is None else "both"
+                text = f"{where} has {has}; it has one of file and points"
+                raise InputError(text, "task", where)
             curve = self._read(where, lambda: self._curve(said, where))
             self.found[where] = curve.placed(_place(said.place, f"{where}.place"))
         known = self.found[where]
@@ -99,10 +102,9 @@ class Shapes:
                 raise InputError(text, "task", where)
             x, y = (said.x[0], said.x[1]), (said.y[0], said.y[1])
             return surface_of_heights(said.heights, x, y, said.step)
-        vertices, faces, messages = mended(
+        return mended_surface(
             np.array(said.vertices, float), np.array(said.faces or [], np.int64).reshape(-1, 3)
         )
-        return Surface(vertices, faces, tuple(messages))
 
     def _curve(self, said: CurveFile, where: str) -> Curve:
         if said.file is not None:
@@ -117,6 +119,9 @@ class Shapes:
         except InputError as error:
             if str(error).startswith(where):
                 raise
+            if error.code == "unit-name":
+                text = f"{where}.unit is wrong: {error}"
+                raise InputError(text, "task", f"{where}.unit") from error
             raise InputError(f"{where}: {error}", error.code, where) from error
         self.warnings += [
             Message(one.code, where, f"{where}: {one.message}") for one in shape.warnings
@@ -154,7 +159,7 @@ def goals_of(said: Sequence[Goal], grid: Grid, shapes: Shapes, free: bool = Fals
     """
     parts: list[Part] = []
     for k, goal in enumerate(said):
-        _agree(goal, f"goals[{k}]")
+        agree(goal, f"goals[{k}]")
         parts += _parts(goal, f"goals[{k}]", grid, shapes)
     if not sum(float(part.weights.sum()) for part in parts) > 0:
         raise InputError("goals all have the weight 0; at least one counts", "task", "goals")
@@ -168,8 +173,12 @@ def rows_of(goal: Goal, grid: Grid) -> int:
     return len(goal.faces) if goal.direction is not None and goal.faces else 1
 
 
-def _agree(goal: Goal, where: str) -> None:
-    """Raise InputError where the keys of a goal do not go together."""
+def agree(goal: Goal, where: str) -> None:
+    """Make sure that the keys of a goal go together.
+
+    Raises:
+        InputError: they do not; one line says which.
+    """
     wanted = [key for key in OF if getattr(goal, key) is not None]
     if len(wanted) != 1:
         what = f"wants {' and '.join(wanted)}" if wanted else "says not what is wanted"
@@ -179,7 +188,7 @@ def _agree(goal: Goal, where: str) -> None:
     allowed = OF[key]
     if len(whose) != bool(allowed) or (whose and whose[0] not in allowed):
         needed = " or ".join(allowed) or "neither vertices nor faces: it is about all beams"
-        has = " and ".join(whose) or "neither"
+        has = " and ".join(whose) or "no vertex and no face"
         raise InputError(f"{where} has {has}; with {key} it has {needed}", "task", where)
     if not goal.slide and key not in ("surface", "curve", "plane"):
         text = f"{where}.slide is false; only on a surface, curve or plane a vertex can slide"

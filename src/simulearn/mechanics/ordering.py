@@ -56,7 +56,7 @@ def _layout(beams: bytes, count: int, fixed: int, joints: int) -> Layout:
     ]
     flat = [row for column in rows for row in column]
     return Layout(
-        np.ascontiguousarray(pairs.T),
+        np.array(pairs.T, order="C"),  # a copy, which is not read-only, also of one beam
         fixed,
         place,
         columns.astype(np.int64),

@@ -157,14 +157,12 @@ def grid_of(
         np.zeros((2, many, 9)), np.zeros((2, many)), np.zeros((2, many)), np.zeros(many),
         np.zeros((many, 3)), np.zeros((many, 4, 3)),
     )  # fmt: skip
-    own = [np.ascontiguousarray(x, np.int64) for x in corners]
-    set_geometry(
-        geometry, np.ascontiguousarray(joints, np.float64), layout.ends, *own,
-        p.width, p.thickness,
-    )  # fmt: skip
-    ratio = np.ascontiguousarray(ratio, np.float64)
-    rows = np.ascontiguousarray(np.broadcast_to(section, (many + 1, section.shape[-1])))
-    return Grid(layout, geometry, own[4], ratio, rows, load_of(p))
+    # All are copies: what is read-only has another type, for which kernels are compiled once more.
+    own = [np.array(x, np.int64, order="C") for x in corners]
+    places = np.array(joints, np.float64, order="C")
+    set_geometry(geometry, places, layout.ends, *own, p.width, p.thickness)
+    rows = np.array(np.broadcast_to(section, (many + 1, section.shape[-1])), order="C")
+    return Grid(layout, geometry, own[4], np.array(ratio, np.float64), rows, load_of(p))
 
 
 def schedule_frames(
@@ -188,6 +186,22 @@ def schedule_frames(
     return Frames(released, gravity, order, corrections, True)
 
 
+def flat_path(grid: Grid, count: int) -> Path:
+    """Return a path of so many frames in each of which the grid is flat."""
+    nodes, joints = grid.nodes, len(grid.geometry.area)
+    path = Path(
+        np.empty((count, nodes, 9)),
+        np.empty((count, nodes, 3)),
+        np.zeros((count, INFO)),
+        np.zeros((count, 2, len(grid.ratio), 6)),
+        jumped=np.zeros(count, np.bool_),
+    )
+    path.R[:, :joints] = np.eye(3).ravel()
+    path.R[:, joints:] = grid.geometry.frame[0]
+    path.p[:, :joints], path.p[:, joints:] = grid.geometry.centre, grid.geometry.middle
+    return path
+
+
 def trace(
     grid: Grid,
     frames: Frames,
@@ -205,18 +219,9 @@ def trace(
             ends there.
         tolerance: of the last motion of an iteration, mm.
     """
-    count, nodes, joints = len(frames.released), grid.nodes, len(grid.geometry.area)
-    path = Path(
-        np.empty((count, nodes, 9)),
-        np.empty((count, nodes, 3)),
-        np.zeros((count, INFO)),
-        np.zeros((count, 2, len(grid.ratio), 6)),
-        tight=small_steps,
-        jumped=np.zeros(count, np.bool_),
-    )
-    path.R[0, :joints] = np.eye(3).ravel()
-    path.R[0, joints:] = grid.geometry.frame[0]
-    path.p[0, :joints], path.p[0, joints:] = grid.geometry.centre, grid.geometry.middle
+    count = len(frames.released)
+    path = flat_path(grid, count)
+    path.tight = small_steps
     order = frames.order.copy()
     guided = np.zeros(count, np.bool_)
     if guide is not None:

@@ -86,7 +86,7 @@ def _head(fig: Figure, k: int, one: Answer) -> None:
     """Write what an answer costs above its card."""
     width, height = fig.get_size_inches()
     by = "by the engine" if one.check.error_fea_mm is None else "by finite elements"
-    beaten = "" if one.on_front else "   (beaten)"
+    beaten = "   (collides)" if one.collides else "" if one.on_front else "   (beaten)"
     many = "actuator" if one.actuators == 1 else "actuators"
     lines = [by, f"{one.actuators} {many}, {one.actuator_mm:.0f} mm"]
     if one.print_seconds is not None:

@@ -30,6 +30,8 @@ TARGET = "#009e73"  # of Okabe and Ito's palette, as the actuators' colours are
 BODY = "#8a8a8a"
 AROUND = 0.12  # of the shape's size, by which a surface is drawn beyond it
 CELLS = 36  # of the net, along the region that is drawn
+LARGEST = 1.5  # cells, that a triangle may be long
+MOST = 200_000  # triangles; long thin ones would become too many
 NEAR, FAR = to_rgb("#bfe3d6"), to_rgb(TOP)
 
 
@@ -156,10 +158,14 @@ def _of_plane(plane: Plane, middle: Array, reach: float) -> Array:
 
 def _coarse(surface: Surface, box: Array, cell: float) -> Array:
     """Return triangles (K, 3, 3) of a surface in a box, the vertices of a cell as one."""
-    middles = surface.vertices[surface.faces].mean(axis=1)
-    faces = surface.faces[((middles >= box[0]) & (middles <= box[1])).all(axis=1)]
-    used, index = np.unique(faces, return_inverse=True)
-    places = surface.vertices[used]
+    every = surface.vertices[surface.faces]
+    large = _longest(every) > LARGEST * cell
+    middles = every.mean(axis=1)
+    inside = ((middles >= box[0]) & (middles <= box[1])).all(axis=1)
+    used, index = np.unique(surface.faces[inside & ~large], return_inverse=True)
+    split = _split(every[large], box, LARGEST * cell).reshape(-1, 3)
+    index = np.concatenate([index.ravel(), len(used) + np.arange(len(split))])
+    places = np.concatenate([surface.vertices[used], split])
     _, of = np.unique(np.floor(places / cell).astype(np.int64), axis=0, return_inverse=True)
     of = of.ravel()
     count = np.bincount(of)
@@ -170,6 +176,27 @@ def _coarse(surface: Surface, box: Array, cell: float) -> Array:
     _, first = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)
     triangles: Array = means[corners[first]]
     return triangles
+
+
+def _split(triangles: Array, box: Array, longest: float) -> Array:
+    """Return the parts (N, 3, 3) of large triangles (K, 3, 3) that are in a box, in small ones."""
+    done = [np.zeros((0, 3, 3))]
+    while 0 < len(triangles) < MOST:
+        touching = (triangles.max(axis=1) >= box[0]) & (triangles.min(axis=1) <= box[1])
+        triangles = triangles[touching.all(axis=1)]
+        small = _longest(triangles) <= longest
+        done.append(triangles[small])
+        a, b, c = np.moveaxis(triangles[~small], 1, 0)
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+        triangles = np.concatenate([np.stack(part, axis=1) for part in parts])
+    return np.concatenate(done)
+
+
+def _longest(triangles: Array) -> Array:
+    """Return the longest sides (K,) of triangles (K, 3, 3)."""
+    sides: Array = np.linalg.norm(np.roll(triangles, 1, axis=1) - triangles, axis=2).max(axis=1)
+    return sides
 
 
 def _draw_net(ax: Axes, polygons: Array, colour: str, camera: Camera) -> None:

@@ -35,7 +35,7 @@ def deviation_map(tiled: Tiled, width: float = 7.2) -> Figure:
     joints, beams = deviations(tiled)
     norm = Normalize(0, max(float(joints.max()), float(beams.max()), 0.1))
     cameras = _cameras(tiled.tiling.normals)
-    seen = [camera.see(tiled.fit.versions.reshape(-1, 3)) for camera in cameras]
+    seen = [camera.see(tiled.fit.joints.reshape(-1, 3)) for camera in cameras]
     lows = [points.min(axis=0)[:2] for points in seen]
     highs = [points.max(axis=0)[:2] for points in seen]
     room = 0.06 * max(float((high - low).max()) for low, high in zip(lows, highs, strict=True))
@@ -84,7 +84,7 @@ def _draw(
     """Draw the patches from the farthest to the nearest, each with its beams and joints."""
     tiling, grid = tiled.tiling, tiled.tiling.lattice
     rim = _rim(grid.joints)
-    points = camera.see(tiled.fit.versions)
+    points = camera.see(tiled.fit.joints)
     middles = camera.see(tiled.beams)
     normals = tiling.normals[tiling.modules].mean(axis=1) @ camera.axes[2]
     two = len(_cameras(tiling.normals)) > 1

@@ -14,12 +14,14 @@ from simulearn.collisions import Collision, find_all
 from simulearn.errors import Cancel, InputError, Message, stop_if
 from simulearn.grid import Grid, TrainingRange, make
 from simulearn.learn.common.bundle import Bundle, bundle_of
-from simulearn.learn.common.model import Designs, Frames, last_frame
+from simulearn.learn.common.model import Frames, last_frame
 from simulearn.material import Material
 from simulearn.schedule import FRAMES, Snap
 from simulearn.simulate.checked import Checked, check_all
 from simulearn.simulate.colliding import collision_warnings
+from simulearn.simulate.designs import designs_of
 from simulearn.simulate.engines import in_order
+from simulearn.simulate.preparing import prepare
 from simulearn.simulate.result import Failure, Outcome, Result
 from simulearn.simulate.simulator import Progress
 
@@ -98,6 +100,7 @@ class Learned:
 
     def warm(self) -> None:
         """Compile what the first simulation would wait for, of one design and of many."""
+        prepare(self.bundle.model)
         small = make("flat", (1, 1), 50.0)
         for count in (1, 4):
             designs = designs_of([small] * count, self.material)
@@ -107,6 +110,7 @@ class Learned:
 
     def _answers(self, batch: Sequence[tuple[int, Checked]]) -> Iterator[tuple[int, Outcome]]:
         """Yield the outcomes of designs of one topology."""
+        prepare(self.bundle.model)
         begun = time.perf_counter()
         designs = designs_of([one.grid for _, one in batch], batch[0][1].material)
         frames = self.bundle.model.rollout(designs)
@@ -233,14 +237,3 @@ def _beyond(bound: float | None, grid: Grid) -> Iterator[Message]:
             "the grid is so unlike those that the model has learnt that its shape cannot be "
             "trusted; simulate it by finite elements",
         )
-
-
-def designs_of(grids: Sequence[Grid], material: Material) -> Designs:
-    """Return grids of one topology as designs of a material."""
-    return Designs(
-        beams=grids[0].beams,
-        fixed=grids[0].fixed,
-        flat=np.stack([grid.joints for grid in grids]),
-        actuators=np.stack([grid.actuators for grid in grids]),
-        material=material,
-    )

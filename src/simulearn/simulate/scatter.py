@@ -26,7 +26,7 @@ Numbers = NDArray[np.float64]
 
 CUT = 3.0  # standard deviations
 LAW = f"normal, cut at {CUT:g} standard deviations"
-LEAST = 4  # prints of which a spread can be told
+LEAST = 4  # prints that a spread needs
 
 
 class Draw(NamedTuple):

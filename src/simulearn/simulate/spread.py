@@ -1,6 +1,6 @@
 """What prints of one design come to: where its joints are on average, and how far they differ.
 
-The spread of a joint is told up and in the plane of the flat grid apart. What nine of ten prints
+The spread of a joint is given for up and for the plane of the flat grid. What nine of ten prints
 do is counted, not computed from a standard deviation, since large motions are not normal.
 """
 

@@ -241,6 +241,40 @@ class SimulateAnswer(_Answer):
     results: list[ResultAnswer | FailureAnswer]
 
 
+class GoalName(_Answer):
+    """One of the goals that the entries of a task stand for."""
+
+    entry: Annotated[int, Field(description="of the task's goals, from 0 on")]
+    name: str
+    kind: str
+
+
+class Motion(_Answer):
+    """First turned, then shifted, mm."""
+
+    turn: list[Point]
+    shift: Point
+
+
+class ShapeMeasured(_Answer):
+    """A shape against the goals, in their order; mm, degrees."""
+
+    error_mm: float
+    distances_mm: list[float]
+    degrees: list[float | None]
+    lines: Annotated[
+        list[list[Point]], Field(description="to where it should be, of goals that are no points")
+    ]
+    place: Annotated[Motion, Field(description="brings the shape to where it is compared")]
+
+
+class MeasureAnswer(_Answer):
+    """How far shapes are from goals."""
+
+    goals: list[GoalName]
+    shapes: list[ShapeMeasured]
+
+
 class Modification(_Answer):
     """A single change of a design and what it leads to."""
 

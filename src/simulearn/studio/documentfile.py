@@ -13,13 +13,18 @@ from simulearn.errors import InputError
 from simulearn.fabricate.profiles import MOST_TEXT
 from simulearn.grid.arrays import shown
 from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
+from simulearn.inverse.goalfile import OBJECT, WORDS, CurveFile, Goal
+from simulearn.inverse.wanting import agree
 from simulearn.material import materials_of
 from simulearn.material.material import is_name
 from simulearn.studio.bodies import OwnMaterials
 from simulearn.studio.problems import place_of
+from simulearn.studio.surfacefile import MOST_TRIANGLES
 
 SCHEMA = "simulearn.document/1"
 MOST_GOALS = 1000
+MOST_SURFACES = 4
+ITSELF = "itself"  # what beams can be away from besides surfaces
 SECTIONS = ("start", "middle", "end")
 NAMED, OWN = "a name", "a profile"  # kinds of a printer, in places of pydantic
 
@@ -27,6 +32,8 @@ Coordinate = Annotated[float, Field(ge=-FARTHEST, le=FARTHEST)]
 Point = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 Target = Annotated[list[Coordinate], Field(min_length=3, max_length=3)]
 Index = Annotated[int, Field(ge=0, lt=MOST_JOINTS)]
+Corner = Annotated[int, Field(ge=0, lt=3 * MOST_TRIANGLES)]
+Corners = Annotated[list[Corner], Field(min_length=3, max_length=3)]
 Pair = Annotated[list[Index], Field(min_length=2, max_length=2)]
 Ratio = Annotated[float, Field(ge=-1, le=1)]
 
@@ -46,11 +53,20 @@ class Drawing(_Strict):
     material: Annotated[str, Field(min_length=1, max_length=80)]
 
 
-class DocumentGoal(_Strict):
-    """A vertex, the point where it is wanted (mm), and how much it counts."""
+class DocumentSurface(_Strict):
+    """A surface that goals name: triangles, mm from the fixed joint."""
 
-    vertex: Annotated[list[int | str], Field(min_length=3, max_length=4)]
-    target: Target
+    name: Annotated[str, Field(min_length=1, max_length=100)]
+    vertices: Annotated[list[Target], Field(min_length=3, max_length=3 * MOST_TRIANGLES)]
+    faces: Annotated[list[Corners], Field(min_length=1, max_length=MOST_TRIANGLES)]
+
+
+class DocumentGoal(Goal):
+    """A goal as in a task, whose surface is the name of one of the document's."""
+
+    target: Target | None = None
+    surface: Annotated[str, Field(max_length=100)] | None = None  # type: ignore[assignment]
+    away_from: Annotated[str, Field(max_length=100)] | None = None  # type: ignore[assignment]
     weight: Annotated[float, Field(ge=0, le=1e6)] = 1.0
 
 
@@ -67,12 +83,17 @@ DocumentPrinter = Annotated[
 
 
 class DocumentFile(_Strict):
-    """A design, its goals, what it is to be printed on (a name, or a profile), own materials."""
+    """A design, its goals with surfaces, what it is to be printed on, own materials.
+
+    The printer is a name, or a profile. With the pose "free" the shape may be placed anywhere.
+    """
 
     schema_: Annotated[Literal["simulearn.document/1"], Field(alias="schema")]
     name: Annotated[str, Field(max_length=200)] = ""
     grid: Drawing
     goals: Annotated[list[DocumentGoal], Field(max_length=MOST_GOALS)] = []
+    surfaces: Annotated[list[DocumentSurface], Field(max_length=MOST_SURFACES)] = []
+    pose: Literal["fixed", "free"] = "fixed"
     printer: DocumentPrinter = ""
     materials: OwnMaterials = []
 
@@ -92,6 +113,8 @@ def check_document(data: Any) -> None:
     except UnicodeEncodeError as error:
         raise InputError("the document holds half a character", "document", "name") from error
     _check_indices(document)
+    _check_surfaces(document)
+    _check_goals(document)
     materials_of(document.materials)
 
 
@@ -111,35 +134,93 @@ def _check_indices(document: DocumentFile) -> None:
     if grid.fixed >= max(joints, 1):
         text = f"grid.fixed is {grid.fixed}; the grid has {joints} joints, numbered from 0"
         raise InputError(text, "document", "grid.fixed")
+
+
+def _check_surfaces(document: DocumentFile) -> None:
+    names: set[str] = set()
+    for k, surface in enumerate(document.surfaces):
+        where = f"surfaces[{k}]"
+        if surface.name in (*names, ITSELF):
+            text = f"{where}.name is {shown(surface.name)}, which another has; names differ"
+            raise InputError(text, "document", f"{where}.name")
+        names.add(surface.name)
+        count = len(surface.vertices)
+        for n, face in enumerate(surface.faces):
+            if max(face) >= count:
+                text = f"{where}.faces[{n}] is {face}; the surface has {count} vertices, from 0 on"
+                raise InputError(text, "document", f"{where}.faces[{n}]")
+
+
+def _check_goals(document: DocumentFile) -> None:
+    joints, beams = len(document.grid.joints), len(document.grid.beams)
+    names = [surface.name for surface in document.surfaces]
     for k, goal in enumerate(document.goals):
-        if not is_vertex(goal.vertex, joints, beams):
-            where = f"goals[{k}].vertex"
-            text = f"{where} is {shown(goal.vertex)}; the grid has no such vertex"
-            raise InputError(text, "document", where)
+        where = f"goals[{k}]"
+        try:
+            agree(goal, where)
+        except InputError as error:
+            raise InputError(str(error), "document", error.where) from error
+        if isinstance(goal.curve, CurveFile) and goal.curve.points is None:
+            text = f"{where}.curve has points; files are not read here"
+            raise InputError(text, "document", f"{where}.curve")
+        for key, known in (("surface", names), ("away_from", [*names, ITSELF])):
+            named = getattr(goal, key)
+            if named is not None and named not in known:
+                text = f"{where}.{key} is {shown(named)}; the document has no such surface"
+                raise InputError(text, "document", f"{where}.{key}")
+        for key, fits in WHOSE.items():
+            value = getattr(goal, key)
+            if value is None or isinstance(value, str):
+                continue
+            for one in value if key in ("vertices", "faces") else [value]:
+                if not fits(one, joints, beams):
+                    what = "vertex" if key.startswith("vert") else "face"
+                    text = f"{where}.{key} is {shown(one)}; the grid has no such {what}"
+                    raise InputError(text, "document", f"{where}.{key}")
 
 
 def is_vertex(vertex: list[Any], joints: int, beams: int) -> bool:
     """Return whether a grid of so many joints and beams has a vertex, as a task names it."""
-
-    def within(k: Any, count: int) -> bool:
-        return isinstance(k, int) and not isinstance(k, bool) and 0 <= k < count
-
     match vertex:
         case ["joint", k, corner]:
-            return within(k, joints) and (corner == "centre" or within(corner, 8))
+            return _within(k, joints) and (corner == "centre" or _within(corner, 8))
         case ["beam", b, section, corner]:
             return (
-                within(b, beams)
-                and (section in SECTIONS or within(section, len(SECTIONS)))
-                and (corner == "centre" or within(corner, 4))
+                _within(b, beams)
+                and _is_section(section)
+                and (corner == "centre" or _within(corner, 4))
             )
     return False
+
+
+def is_face(face: list[Any], joints: int, beams: int) -> bool:
+    """Return whether a grid of so many joints and beams has a face, as a task names it."""
+    match face:
+        case ["joint", k, side]:
+            return _within(k, joints) and (side == "top" or _within(side, 4))
+        case ["beam", b]:
+            return _within(b, beams)
+        case ["beam", b, section] | ["beam", b, section, "top"]:
+            return _within(b, beams) and _is_section(section)
+    return False
+
+
+# What names parts of the grid in a goal, and what a name has to be.
+WHOSE = {"vertex": is_vertex, "vertices": is_vertex, "face": is_face, "faces": is_face}
+
+
+def _within(k: Any, count: int) -> bool:
+    return isinstance(k, int) and not isinstance(k, bool) and 0 <= k < count
+
+
+def _is_section(section: Any) -> bool:
+    return section in SECTIONS or _within(section, len(SECTIONS))
 
 
 def _wrong(error: ValidationError) -> InputError:
     """Return the first of pydantic's errors in our words."""
     first = error.errors(include_url=False)[0]
-    where = place_of(part for part in first["loc"] if part not in (NAMED, OWN))
+    where = place_of(part for part in first["loc"] if part not in (NAMED, OWN, WORDS, OBJECT))
     if first["type"] == "missing":
         text = f"{where} is missing"
     elif first["type"] == "extra_forbidden":

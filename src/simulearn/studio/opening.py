@@ -1,4 +1,4 @@
-"""Files that a person opens: grids, tasks, results, pages, documents, and drawings of others.
+"""Files that a person opens: grids, tasks, results, pages, documents; drawings, surfaces of others.
 
 All are known by what they hold, not by their names.
 """
@@ -6,7 +6,7 @@ All are known by what they hold, not by their names.
 from dataclasses import asdict
 from functools import partial
 from pathlib import PurePath, PureWindowsPath
-from typing import Any
+from typing import Any, Literal
 
 from simulearn.drawings.importing import Imported, Options, imported
 from simulearn.drawings.pages import SCHEMA as PAGE
@@ -24,29 +24,38 @@ from simulearn.simulate.resultfile import FAILURE
 from simulearn.simulate.resultfile import SCHEMA as RESULT
 from simulearn.studio.documentfile import SCHEMA as DOCUMENT
 from simulearn.studio.documentfile import check_document
+from simulearn.studio.surfacefile import surface_of
+from simulearn.studio.taskfile import goals_in
 
 LOOK = 2**12  # bytes in which JSON begins
 OWN = "simulearn."  # the beginning of our schemas
-OPENED = "the studio opens grids, tasks, results, documents and drawings"
+OPENED = "the studio opens grids, tasks, results, documents, drawings and surfaces"
 # What is left out of a design's name.
-ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj", ".html")
+ENDINGS = (".json", ".dxf", ".svg", ".3dm", ".csv", ".txt", ".obj", ".html", ".stl", ".ply", ".glb")
 # What a search begins from may not have; it is no error in a drawing.
 REMOVABLE = ("dangling-beam", "unused-joint")
 FILES = "surface-path"  # a goal on a surface that only the command line can read
 
 
-def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, Any]:
+def opened(
+    data: bytes,
+    name: str,
+    options: Options | None = None,
+    meant: Literal["surface", "drawing"] | None = None,
+) -> dict[str, Any]:
     """Return the parts of a document that a file holds.
 
     Args:
         data: contents of the file.
         name: of the file; it names a design that has no name of its own.
-        options: how a drawing is to be read.
+        options: how a drawing is to be read; its unit is that of a surface, too.
+        meant: what a file is to be taken for that holds lines and triangles.
 
     Returns:
-        kind (grid, task, result, document or drawing), name, grid, goals, printer (None if the file
-        names none), texts of own materials, messages about what was not taken over, and what is to
-        be told of a drawing: format, unit, layers and mends (None for other files).
+        kind (grid, task, result, document or drawing), name, grid, goals, surfaces, pose, printer
+        (None if the file names none), texts of own materials, messages about what was not taken
+        over, and what is to be reported of a drawing: format, unit, layers and mends (None for
+        other files). Of a surface: kind, name, and what `surface_of` says.
 
     Raises:
         InputError: the file holds nothing that can be opened; the message says what and where.
@@ -55,12 +64,17 @@ def opened(data: bytes, name: str, options: Options | None = None) -> dict[str, 
     stem = _stem(name)
     named = partial("{}: {}".format, stem or "the file")
     try:
+        unit = options.unit if options else None
+        surface = meant != "drawing" and surface_of(data, name, unit, meant=meant == "surface")
+        if surface:
+            return {"kind": "surface", "name": stem or "surface", "surface": surface}
         parts = _parts(data, name, options)
     except UnitError as error:
         raise UnitError(named(error), error.guess, error.size) from error
     except InputError as error:
         raise InputError(named(error), error.code, error.where, error.messages) from error
-    check_document({"schema": DOCUMENT, "grid": parts["grid"], "goals": parts["goals"]})
+    wanted = {key: parts[key] for key in ("goals", "surfaces", "pose")}
+    check_document({"schema": DOCUMENT, "grid": parts["grid"], **wanted})
     messages = [asdict(message) for message in parts["messages"]]
     return {**parts, "name": parts["name"] or stem, "messages": messages}
 
@@ -70,6 +84,8 @@ def _parts(data: bytes, name: str, options: Options | None) -> dict[str, Any]:
     parts: dict[str, Any] = {
         "name": "",
         "goals": [],
+        "surfaces": [],
+        "pose": "fixed",
         "printer": None,
         "materials": [],
         "messages": [],
@@ -143,23 +159,22 @@ def _of_task(data: Any) -> dict[str, Any]:
             raise
         task = Task.model_validate(data)
     messages = []
-    plain = (task.free, task.limits, task.method) == (Free(), Limits(), "default")
-    if not plain or task.of_prints:
+    if (task.free, task.limits, task.method, task.robust) != (Free(), Limits(), "default", False):
         text = (
-            "what the task says about free parts, limits, method, tolerances and robust is not "
-            "part of a document"
+            "what the task says about free parts, limits, method and robust is not part of a "
+            "document"
         )
         messages.append(Message("opened-task", "file", text))
-    kept = [goal for goal in task.goals if goal.target is not None and goal.vertex is not None]
-    goals = [goal.model_dump(exclude={"tolerance"}) for goal in kept]
-    if len(kept) < len(task.goals) or task.pose != "fixed":
+    goals, surfaces, lost = goals_in(task)
+    if lost:
         text = (
-            f"{len(task.goals) - len(kept)} goals of the task are no targets of single vertices, "
-            "or its pose is free; that is not part of a document"
+            f"{len(lost)} goals name files ({', '.join(lost)[:200]}), which cannot be read from "
+            "here; drop the surface on the page"
         )
         messages.append(Message("opened-goals", "file", text))
     grid = grid_to_dict(grid_from_dict(task.grid))
-    return {"kind": "task", "grid": grid, "goals": goals, "messages": messages}
+    parts = {"goals": goals, "surfaces": surfaces, "pose": task.pose}
+    return {"kind": "task", "grid": grid, "messages": messages, **parts}
 
 
 def _of_drawing(found: Imported) -> dict[str, Any]:
@@ -179,7 +194,8 @@ def _of_drawing(found: Imported) -> dict[str, Any]:
 
 def _of_document(data: Any) -> dict[str, Any]:
     check_document(data)
-    optional = {key: data[key] for key in ("name", "printer", "materials") if data.get(key)}
+    names = ("name", "printer", "materials", "surfaces", "pose")
+    optional = {key: data[key] for key in names if data.get(key)}
     return {
         "kind": "document",
         "grid": data["grid"],

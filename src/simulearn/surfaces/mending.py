@@ -5,6 +5,7 @@ that meet at an edge are joined as they are if they run along it in opposite dir
 with the other one turned. Faces that belong together are then the connected parts.
 """
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from simulearn.errors import InputError, Message
+from simulearn.surfaces.surface import Surface
 from simulearn.surfaces.tree import Tree
 
 Array = NDArray[np.float64]
@@ -24,9 +26,32 @@ FLAT = 1e-12  # of the squared size of the surface; a triangle of less area has 
 SEAM = 1e-7  # of the size; vertices of two edges that are nearer are one
 FARTHEST = 1e9  # mm or what the unit of the file is
 TURNED_MOST = 200  # bodies that are looked at one by one
+SHOWN = 50  # places of one kind
 
 
-def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices, list[Message]]:
+@dataclass(frozen=True, eq=False)
+class Mend:
+    """Something that was done to triangles, or is odd about them.
+
+    Attributes:
+        code: short name of it.
+        message: for people.
+        places: (K, 3) where, in the unit of the file; none where there is no place.
+    """
+
+    code: str
+    message: str
+    places: Array
+
+
+def mended_surface(vertices: NDArray[Any], faces: NDArray[Any]) -> Surface:
+    """Return the surface of vertices (V, 3) and faces (T, 3); raises as `mended` does."""
+    vertices, faces, mends = mended(vertices, faces)
+    said = tuple(Message(mend.code, "surface", mend.message) for mend in mends)
+    return Surface(vertices, faces, said, {mend.code: mend.places for mend in mends})
+
+
+def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices, list[Mend]]:
     """Return vertices (V, 3) and faces (T, 3) that can be used, and what was done to them.
 
     Vertices at the same place become one.
@@ -34,15 +59,15 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     Raises:
         InputError: there is nothing that can be used.
     """
-    messages: list[Message] = []
+    mends: list[Mend] = []
     vertices = np.ascontiguousarray(vertices, np.float64)
     faces = np.ascontiguousarray(faces, np.int64)
-    there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
     known = np.all((faces >= 0) & (faces < len(vertices)), axis=1)
-    sound = known & np.all(there[np.where(known[:, None], faces, 0)], axis=1)
-    faces = _kept(
-        faces, sound, "have corners that are no finite numbers", "surface-not-finite", messages
-    )
+    why = "name vertices that are not there"
+    faces = _kept(faces, known, why, "surface-not-there", None, mends)
+    there = np.all(np.abs(vertices) < FARTHEST, axis=1)  # False where it is NaN
+    why = f"have corners that are no numbers below {FARTHEST:g}"
+    faces = _kept(faces, there[faces].all(axis=1), why, "surface-not-finite", None, mends)
     vertices, faces = _merged(vertices, faces)
     corners = vertices[faces]
     double = np.linalg.norm(
@@ -50,29 +75,64 @@ def mended(vertices: NDArray[Any], faces: NDArray[Any]) -> tuple[Array, Indices,
     )
     size = np.ptp(vertices, axis=0) if len(vertices) else np.zeros(3)
     wide = double > FLAT * (size @ size)
-    faces = _kept(faces, wide, "have no area", "surface-degenerate", messages)
+    faces = _kept(faces, wide, "have no area", "surface-degenerate", vertices, mends)
     _, first = np.unique(_numbered(np.sort(faces, axis=1)), return_index=True)
     single = np.zeros(len(faces), bool)
     single[first] = True
-    faces = _kept(faces, single, "are there more than once", "surface-duplicates", messages)
+    faces = _kept(faces, single, "are there more than once", "surface-duplicates", vertices, mends)
     faces = _sewn(vertices, faces)
     if not len(faces):
-        why = f" ({messages[-1].message})" if messages else ""
+        why = f" ({mends[-1].message})" if mends else ""
         raise InputError(f"has no triangle that can be used{why}", "surface-empty", "surface")
-    faces, count = _turned(vertices, faces, messages)
-    if count > 1:
-        text = f"is in {count} separate pieces; at each point the nearest of them counts"
-        messages.append(Message("surface-pieces", "surface", text))
+    faces, pieces, piece = _turned(vertices, faces, mends)
+    if pieces > 1:
+        text = f"is in {pieces} separate pieces; at each point the nearest of them counts"
+        firsts = np.unique(piece, return_index=True)[1]
+        mends.append(Mend("surface-pieces", text, _middles(vertices, faces[firsts])))
     used, index = np.unique(faces, return_inverse=True)
-    return vertices[used], index.reshape(-1, 3).astype(np.int64), messages
+    vertices, faces = vertices[used], index.reshape(-1, 3).astype(np.int64)
+    mends += holes(vertices, faces)
+    return vertices, faces, mends
 
 
-def _kept(faces: Indices, keep: Mask, why: str, code: str, messages: list[Message]) -> Indices:
+def holes(vertices: Array, faces: Indices) -> list[Mend]:
+    """Return a mend that says where holes are: open edges that go around less than the size."""
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    key, many = np.unique(low * len(vertices) + high, return_counts=True)
+    a, b = np.divmod(key[many == 1], len(vertices))
+    if not len(a):
+        return []
+    _, part = _parts(len(vertices), a, b)
+    _, rim = np.unique(part[a], return_inverse=True)
+    lengths = np.linalg.norm(vertices[a] - vertices[b], axis=1)
+    around = np.bincount(rim, lengths)
+    halfway = (vertices[a] + vertices[b]) / 2
+    middles = np.stack([np.bincount(rim, lengths * x) / around for x in halfway.T], axis=1)
+    small = around < np.linalg.norm(np.ptp(vertices, axis=0))
+    if not small.any():
+        return []
+    count = int(small.sum())
+    what = "a hole; over it" if count == 1 else f"{count} holes; over them"
+    text = f"has {what} the nearest edge counts"
+    return [Mend("surface-holes", text, middles[small][:SHOWN])]
+
+
+def _kept(
+    faces: Indices, keep: Mask, why: str, code: str, vertices: Array | None, mends: list[Mend]
+) -> Indices:
     lost = int((~keep).sum())
     if lost:
         text = f"{lost:,} of {len(faces):,} triangles {why}; they are left out"
-        messages.append(Message(code, "surface", text))
+        places = np.zeros((0, 3)) if vertices is None else _middles(vertices, faces[~keep])
+        mends.append(Mend(code, text, places))
     return faces[keep]
+
+
+def _middles(vertices: Array, faces: Indices) -> Array:
+    """Return the middles of some faces (T, 3)."""
+    middles: Array = vertices[faces[:SHOWN]].mean(axis=1)
+    return middles
 
 
 def _merged(vertices: Array, faces: Indices) -> tuple[Array, Indices]:
@@ -126,8 +186,8 @@ def _numbered(rows: Indices) -> Indices:
     return mixed.view(np.int64)
 
 
-def _turned(vertices: Array, faces: Indices, messages: list[Message]) -> tuple[Indices, int]:
-    """Return the faces, neighbours turned alike, bodies outwards; and how many pieces."""
+def _turned(vertices: Array, faces: Indices, mends: list[Mend]) -> tuple[Indices, int, Indices]:
+    """Return the faces, neighbours turned alike, bodies outwards; how many pieces, and whose."""
     count = len(faces)
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     of = np.tile(np.arange(count), 3)
@@ -147,8 +207,8 @@ def _turned(vertices: Array, faces: Indices, messages: list[Message]) -> tuple[I
     first, second = part[:count], part[count:]
     if (first == second).any():
         text = "has only one side, as a Moebius strip; what is inside is not known"
-        messages.append(Message("surface-one-sided", "surface", text))
-        return faces, pieces
+        mends.append(Mend("surface-one-sided", text, np.zeros((0, 3))))
+        return faces, pieces, piece
     # Of the two ways to turn a piece the one that turns fewer faces.
     turn = first > second
     share = np.bincount(piece, turn) / np.bincount(piece)
@@ -157,8 +217,8 @@ def _turned(vertices: Array, faces: Indices, messages: list[Message]) -> tuple[I
     turn ^= _inwards(vertices, flipped, piece, pieces, bool((many == 2).all()))
     if turn.any():
         text = f"{int(turn.sum()):,} of {count:,} triangles faced the other way; they are turned"
-        messages.append(Message("surface-flipped", "surface", text))
-    return np.where(turn[:, None], faces[:, ::-1], faces), pieces
+        mends.append(Mend("surface-flipped", text, _middles(vertices, faces[turn])))
+    return np.where(turn[:, None], faces[:, ::-1], faces), pieces, piece
 
 
 def _inwards(vertices: Array, faces: Indices, piece: Indices, pieces: int, closed: bool) -> Mask:

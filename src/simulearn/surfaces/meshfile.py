@@ -1,12 +1,16 @@
 """Mesh files (STL, OBJ, PLY, GLB) as Trimesh reads them, in one line where it cannot."""
 
+import re
+from codecs import BOM_UTF8
 from io import BytesIO
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import Any
 
 from simulearn.errors import InputError
 from simulearn.files import MOST_BYTES
 
+FROM_ZERO = re.compile(rb"^f(?:[ \t]+[^\s]+)*?[ \t]+0(?:[/\s]|$)", re.MULTILINE)
 FORMATS = {".stl": "stl", ".ply": "ply", ".obj": "obj"}  # without a unit
 
 
@@ -27,6 +31,9 @@ def loaded(data: bytes, ending: str, name: str, code: str) -> Any:
     if data[:40].startswith(b"version https://git-lfs"):
         raise InputError(f"{name}: is a pointer of Git LFS and no {code}; `git lfs pull`", code)
     more: Any = {"skip_materials": True} if ending == "obj" else {}
+    data = data.removeprefix(BOM_UTF8)  # Trimesh would take it for a part of the first line
+    if ending == "obj" and FROM_ZERO.search(data):  # Trimesh would take the last vertex
+        raise InputError(f"{name}: a face has the vertex 0; OBJ counts from 1", code, name)
     try:
         shape: Any = trimesh.load(BytesIO(data), file_type=ending, process=False, **more)
         if isinstance(shape, trimesh.Scene):
@@ -58,11 +65,24 @@ def contents(path: Path, code: str) -> bytes:
         InputError: it is missing, too large or cannot be read.
     """
     try:
-        if path.stat().st_size > MOST_BYTES:
+        status = path.stat()
+        if not S_ISREG(status.st_mode) and not S_ISDIR(status.st_mode):
+            raise InputError(f"{path}: is a device or a pipe; name a file", code)
+        if status.st_size > MOST_BYTES:
             most = f"{MOST_BYTES / 2**20:g} MiB"
             raise InputError(f"{path}: is too large; at most {most} can be read", code)
         return path.read_bytes()
     except FileNotFoundError as error:
-        raise InputError(f"{path}: there is no such file") from error
+        web = "; an address on the web is no file: load it first" if _web(path) else ""
+        raise InputError(f"{path}: there is no such file{web}") from error
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError(f"{str(path)!r}: is not the name of a file ({error})", code) from error
+
+
+def _web(path: Path) -> bool:
+    """Return whether a path was an address; paths have single slashes."""
+    return any(part in ("http:", "https:") for part in path.parts)

@@ -19,14 +19,16 @@ from simulearn.drawings.units import unit_named
 from simulearn.errors import InputError, Message
 from simulearn.surfaces.chains import chained
 from simulearn.surfaces.curve import Curve
-from simulearn.surfaces.mending import mended
+from simulearn.surfaces.mending import mended_surface
 from simulearn.surfaces.meshfile import FORMATS, contents, loaded
 from simulearn.surfaces.surface import Surface
 
 METRE = 1000.0  # mm
 Z_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # turns +y up into +z up
-READ = " ".join([*FORMATS, ".glb", ".3dm"])
+KINDS = (*FORMATS.values(), "glb", "3dm")
+READ = " ".join(f".{kind}" for kind in KINDS)
 USUAL = (5.0, 5000.0)  # mm, across what people mean
+TABLES = (".csv", ".tsv", ".txt")
 CHORD = 0.01  # mm, distance between a curve and its chords
 
 
@@ -42,14 +44,29 @@ def read_surface(path: Path | str, unit: str | None = None) -> Surface:
         InputError: the file cannot be read, is damaged or holds no triangle; one line says why.
     """
     path = Path(path)
-    mm = None if unit is None else unit_named(unit, "as given").mm
+    if unit is not None:
+        unit_named(unit, "as given")  # before a file is looked for
+    kind = path.suffix.lower().removeprefix(".")
     data = contents(path, "surface")
-    ending = path.suffix.lower()
+    if kind not in KINDS:
+        raise InputError(f"{path}: the ending is not one of {READ}", "surface-format", str(path))
+    return surface_in(data, kind, path, unit)
+
+
+def surface_in(data: bytes, kind: str, path: Path, unit: str | None = None) -> Surface:
+    """Return the surface in the contents of a file, as `read_surface` does.
+
+    Args:
+        data: the contents.
+        kind: one of `KINDS`.
+        path: of the file, for messages.
+        unit: of the file.
+    """
+    mm = None if unit is None else unit_named(unit, "as given").mm
     says: list[Message] = []
-    if ending == ".3dm":
+    if kind == "3dm":
         vertices, faces, own, says = _of_rhino(data, path)
-    elif ending in FORMATS or ending == ".glb":
-        kind = FORMATS.get(ending, "glb")
+    else:
         shape = loaded(data, kind, str(path), "surface")
         if shape is None or not len(getattr(shape, "faces", ())):
             what = (
@@ -61,19 +78,16 @@ def read_surface(path: Path | str, unit: str | None = None) -> Surface:
         own = METRE if kind == "glb" else None
         if kind == "glb":
             vertices = vertices @ Z_UP.T
-    else:
-        raise InputError(f"{path}: the ending is not one of {READ}", "surface-format", str(path))
     try:
-        vertices, faces, mends = mended(vertices, faces)
+        surface = mended_surface(vertices, faces)
     except InputError as error:
         raise InputError(f"{path}: {error}", error.code, str(path)) from error
-    scale = mm or own or 1.0
-    surface = Surface(vertices, faces).scaled(scale)
-    if scale == 1.0 and mm is None and own is None:
-        says += _odd(surface.size, "surface")
+    surface = surface.scaled(mm or own or 1.0)
+    if mm is None:
+        says += _odd(surface.size, "surface", own)
     named = tuple(
         replace(one, where=str(path), message=f"{path.name}: {one.message}")
-        for one in (*says, *mends)
+        for one in (*says, *surface.warnings)
     )
     return replace(surface, warnings=named)
 
@@ -103,12 +117,14 @@ def read_curve(path: Path | str, unit: str | None = None) -> Curve:
         if len(chains) != 1:
             count = f"{len(chains)} separate curves" if chains else "no curve"
             why = "".join(f"; {out.count} {out.kind} {out.reason}" for out in drawing.left_out[:3])
+            if path.suffix.lower() in TABLES and chains:
+                why = "; in a table with a row for each point there are two or three columns"
             raise InputError(f"holds {count}; a file of a curve has one{why}", "curve-count")
         curve = Curve(chains[0])
     except InputError as error:
         raise InputError(f"{path}: {error}", error.code, str(path)) from error
-    if mm == 1.0 and unit is None and drawing.unit is None:
-        says += _odd(curve.size, "curve")
+    if unit is None:
+        says += _odd(curve.size, "curve", None if drawing.unit is None else mm)
     if drawing.left_out:
         lost = sum(part.count for part in drawing.left_out)
         says.append(Message("curve-left-out", "", f"{lost} things that are no lines are left out"))
@@ -116,13 +132,26 @@ def read_curve(path: Path | str, unit: str | None = None) -> Curve:
     return replace(curve, warnings=tuple(named))
 
 
-def _odd(size: float, what: str) -> list[Message]:
-    """Return a warning where a size in mm is hardly meant."""
+def _odd(size: float, what: str, own: float | None) -> list[Message]:
+    """Return a warning where a size in mm is hardly meant.
+
+    Args:
+        size: mm.
+        what: has it.
+        own: mm, the unit that the file itself says; None where it says none.
+    """
     if USUAL[0] <= size <= USUAL[1]:
         return []
-    text = f"the file has no unit and is taken to be in mm; so the {what} is {size:.3g} mm across"
-    if size < USUAL[0]:
+    taken = (
+        "the file has no unit and is taken to be in mm"
+        if own is None
+        else f"the unit of the file is {own:g} mm"
+    )
+    text = f"{taken}; so the {what} is {size:.3g} mm across"
+    if size < USUAL[0] and own is None:
         text += '; if it is in metres or inches, say "unit": "m" or "in"'
+    if size > USUAL[1] and own not in (None, 1.0):
+        text += '; if it was drawn in mm, say "unit": "mm"'
     return [Message("surface-unit", what, text)]
 
 

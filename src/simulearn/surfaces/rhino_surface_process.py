@@ -65,7 +65,7 @@ class _Reader:
         self.left_out: dict[str, int] = {}
         self.untrimmed = 0
         self._model = model
-        self._hidden = {layer.Index for layer in model.Layers if not layer.Visible}
+        self._hidden = _hidden(list(model.Layers))
         self._objects = {str(item.Attributes.Id): item for item in model.Objects}
         self._blocks = {
             str(block.Id): [str(member) for member in block.GetObjectIds()]
@@ -122,6 +122,21 @@ class _Reader:
 
     def _leave(self, kind: str) -> None:
         self.left_out[kind] = self.left_out.get(kind, 0) + 1
+
+
+def _hidden(layers: list[Any]) -> set[int]:
+    """Return the indices of layers that are off, or below one that is."""
+    by_id = {str(layer.Id): layer for layer in layers}
+    hidden = set()
+    for layer in layers:
+        above: Any = layer
+        for _ in layers:  # no more levels than layers, should they go around
+            if above is None or not above.Visible:
+                break
+            above = by_id.get(str(above.ParentLayerId))
+        if above is not None and not above.Visible:
+            hidden.add(layer.Index)
+    return hidden
 
 
 def _of_mesh(mesh: Any) -> tuple[Any, Any]:

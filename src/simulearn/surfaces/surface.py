@@ -1,6 +1,7 @@
 """Surfaces made of triangles: closest points, normals, and which side of a closed one is inside."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,11 +24,13 @@ class Surface:
         vertices: (V, 3) mm.
         faces: (T, 3) their corners among the vertices, seen from outside counter-clockwise.
         warnings: what was mended or guessed when they were read.
+        places: (K, 3) mm where that was, by the code of a warning.
     """
 
     vertices: Array
     faces: Indices
     warnings: tuple[Message, ...] = ()
+    places: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Take arrays as they are needed.
@@ -118,11 +121,13 @@ class Surface:
 
     def placed(self, place: Place) -> "Surface":
         """Return the surface after a rigid motion."""
-        return replace(self, vertices=place(self.vertices))
+        places = {code: place(points) for code, points in self.places.items()}
+        return replace(self, vertices=place(self.vertices), places=places)
 
     def scaled(self, factor: float) -> "Surface":
         """Return the surface so many times as large, about the origin."""
-        return replace(self, vertices=self.vertices * factor)
+        places = {code: points * factor for code, points in self.places.items()}
+        return replace(self, vertices=self.vertices * factor, places=places)
 
     @cached_property
     def _tree(self) -> Tree:

@@ -29,13 +29,15 @@ class Fit:
 
     Attributes:
         places: M rigid motions.
-        versions: (M, K, 3) mm, where each module has its joints.
-        targets: (N, 3) mm, where they are wanted; shared ones have moved.
+        joints: (M, K, 3) mm, of each module.
+        versions: (M, K, 3) mm, where each module has the points: its joints less the inset.
+        targets: (N, 3) mm, where the points are wanted; shared ones have moved.
         gaps: (N,) mm, largest distance between two modules' versions; 0 where it is one's alone.
         away: (M, K) mm, how far joints are from their targets.
     """
 
     places: tuple[Place, ...]
+    joints: Array
     versions: Array
     targets: Array
     gaps: Array
@@ -65,9 +67,10 @@ def fit(tiling: Tiling, members: Sequence[Member], shapes: Array, targets: Array
     targets = targets.copy()
     shared = tiling.shared
     for _ in range(ROUNDS):
-        wanted = targets[tiling.modules]
+        wanted = tiling.wanted(targets)
         places = tuple(Place.fitting(a, b) for a, b in zip(own, wanted, strict=True))
-        versions = np.array([place(shape) for place, shape in zip(places, own, strict=True)])
+        joints = np.array([place(shape) for place, shape in zip(places, own, strict=True)])
+        versions = joints - tiling.inset
         middle = _means(tiling, versions)[shared]
         moved = tiling.surface.closest(middle)[0]
         still = float(np.linalg.norm(moved - targets[shared], axis=1).max(initial=0.0)) < STILL
@@ -75,7 +78,7 @@ def fit(tiling: Tiling, members: Sequence[Member], shapes: Array, targets: Array
         if still:
             break
     away = np.linalg.norm(versions - targets[tiling.modules], axis=-1)
-    return Fit(places, versions, targets, gaps(tiling, versions), away)
+    return Fit(places, joints, versions, targets, gaps(tiling, versions), away)
 
 
 def gaps(tiling: Tiling, versions: Array) -> Array:

@@ -61,7 +61,12 @@ class ChartFile(_Part):
     between: Between | None = None
 
 
-KINDS = ("revolution", "heights", "between")
+PARTS: dict[str, type[_Part]] = {
+    "revolution": Revolution,
+    "heights": Heights,
+    "between": Between,
+}
+KINDS = tuple(PARTS)
 KEYS = {
     "schema": 'this program reads "simulearn.chart/1"',
     "revolution": "it has profile, a list of [radius, height] in mm, and degrees",
@@ -136,6 +141,7 @@ def _of_heights(given: Heights) -> Chart:
             text = f"{name} is {shown(line)}; of an expression it is [from, to] in mm"
             raise InputError(text, "chart", name)
     expression = given.z
+    computed(expression, np.array(x), np.array(y))  # so that it is told here where it is wrong
     return heights(lambda a, b: computed(expression, a, b), x, y)
 
 
@@ -157,7 +163,9 @@ def _wrong(error: Any) -> InputError:
     where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in keys).lstrip(".")
     hint = next((KEYS[name] for name in reversed(names) if name in KEYS), "")
     if error["type"] == "extra_forbidden":
-        text = f"{where} is not a key here; the keys are those of the kinds {', '.join(KINDS)}"
+        model = PARTS.get(names[0], ChartFile) if len(names) > 1 else ChartFile
+        known = (field.alias or name for name, field in model.model_fields.items())
+        text = f"{where} is not a key here; the keys are {', '.join(known)}"
     elif error["type"] == "missing":
         text = f"{where} is missing; {hint}"
     else:

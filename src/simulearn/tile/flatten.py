@@ -53,8 +53,8 @@ def frame(points: Array, normals: Array, grid: Grid) -> Array:
     """
     z, k = normals[grid.fixed], grid.fixed
     ends = grid.joints - grid.joints[k]
-    ways = (points - points[k]) * np.sign(ends[:, :1]) * (ends[:, 1:] == 0)
-    x = ways.sum(axis=0)
+    steps = (points - points[k]) * np.sign(ends[:, :1]) * (ends[:, 1:] == 0)
+    x = steps.sum(axis=0)
     x = x - (x @ z) * z
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z])

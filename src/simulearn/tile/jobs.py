@@ -6,9 +6,10 @@ FOLDER/work/KEY.json   the answer to a job, by its name
 import json
 from collections.abc import Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from time import monotonic
+from time import monotonic, time
 
 from simulearn.dataset.workers import Workers
 from simulearn.errors import Cancel, InputError, stop_if
@@ -16,6 +17,7 @@ from simulearn.files import read_text, replacing
 from simulearn.tile.searching import ModuleAnswer, ModuleJob
 from simulearn.tile.tiled import Progress, Stage
 
+STALE = 3600.0  # s, after which half a file is what a killed run has left
 TRIES = 3  # of a search whose worker dies
 PATIENCE = 0.5  # s between two looks at the token and the clock
 AHEAD = 2  # jobs given to each worker
@@ -51,7 +53,9 @@ class Jobs:
             except OSError as error:
                 raise InputError(f"{folder}: cannot be made ({error.strerror})") from error
             for half in self.folder.glob(".*.json"):
-                half.unlink(missing_ok=True)
+                with suppress(OSError):  # another run may write it now
+                    if time() - half.stat().st_mtime > STALE:
+                        half.unlink()
 
     def answers(
         self, number: int, jobs: Sequence[ModuleJob], final: bool = False

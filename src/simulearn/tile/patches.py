@@ -30,6 +30,9 @@ class Tiling:
         names: of the modules.
         surface: that they cover.
         warnings: what was mended or guessed.
+        inset: (M, K, 3) mm, from the points to where each module has its own joints; see
+            `inset.with_inset`.
+        tilt: (M, K, 3) difference of the normals there.
     """
 
     points: Array
@@ -39,6 +42,8 @@ class Tiling:
     names: tuple[str, ...]
     surface: Surface
     warnings: tuple[Message, ...] = ()
+    inset: Array | float = 0.0
+    tilt: Array | float = 0.0
 
     @cached_property
     def lattice(self) -> Grid:
@@ -48,7 +53,19 @@ class Tiling:
     @property
     def targets(self) -> Array:
         """(M, K, 3) mm, where each module's joints are wanted."""
-        return self.points[self.modules]
+        return self.wanted(self.points)
+
+    def wanted(self, points: Array) -> Array:
+        """Return where modules have their joints (M, K, 3) mm, with points (N, 3) that moved."""
+        own: Array = points[self.modules] + self.inset
+        return own
+
+    @property
+    def target_normals(self) -> Array:
+        """(M, K, 3) unit, of the surface at the targets."""
+        normals = self.normals[self.modules] + self.tilt
+        unit: Array = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
+        return unit
 
     @property
     def shared(self) -> NDArray[np.bool_]:

@@ -7,13 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from simulearn.assembly import Assembly, Part
+from simulearn.assembly import Assembly, Part, Step
 from simulearn.grid import Grid
 from simulearn.tile.tiled import Tiled
 
 Array = NDArray[np.float64]
 
 SCHEMA = "simulearn.tile/1"
+APART = 0.5  # of their distance from the middle of all, by which modules are farther off at first
+TOUCH = 0.5  # mm, by which beams side by side may be in each other besides the gap
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ def pieces(tiled: Tiled) -> tuple[Piece, ...]:
 
 
 def assembled(tiled: Tiled, files: dict[str, Path] | None = None, name: str = "") -> Assembly:
-    """Return the modules in their places; neighbours lie on each other at their borders.
+    """Return the modules, which morph apart from each other and are then put together.
 
     Args:
         tiled: the tiling.
@@ -76,10 +78,30 @@ def assembled(tiled: Tiled, files: dict[str, Path] | None = None, name: str = ""
             )
     names = tiled.tiling.names
     joined = tuple((names[a], names[b]) for a, b in tiled.tiling.touching)
-    # Beams on a common border lie in the same place, one in the other.
-    deep = 2 * tiled.width
+    apart = 2 * (tiled.settings.inset_mm or 0.0)  # axes of beams on a common border
+    deep = tiled.fit.gap_mm + (TOUCH if apart >= tiled.width else 2 * tiled.width)
     return Assembly(
-        tuple(parts[m] for m in range(len(names))), joined=joined, joined_mm=deep, name=name
+        tuple(parts[m] for m in range(len(names))),
+        _steps(tiled),
+        joined=joined,
+        joined_mm=deep,
+        name=name,
+    )
+
+
+def _steps(tiled: Tiled) -> tuple[Step, ...]:
+    """Return how modules come together: from everywhere at once, so that none is in the way."""
+    names, middles = tiled.tiling.names, tiled.fit.joints.mean(axis=1)
+    if len(names) == 1:
+        return ()
+    away = APART * (middles - middles.mean(axis=0))
+    slide = {
+        name: (float(x), float(y), float(z))
+        for name, (x, y, z) in zip(names, away.round(3), strict=True)
+    }
+    return (
+        Step(tuple(names), name="the modules morph"),
+        Step(slide=slide, name="they are put together"),
     )
 
 
@@ -126,7 +148,7 @@ def tiling_figures(tiled: Tiled) -> dict[str, Any]:
 def deviations(tiled: Tiled) -> tuple[Array, Array]:
     """Return how far joints (M, K) and middles of beams (M, B) are from the surface, mm."""
     surface = tiled.tiling.surface
-    joints, beams = tiled.fit.versions, tiled.beams
+    joints, beams = tiled.fit.joints, tiled.beams
     return (
         surface.distance(joints.reshape(-1, 3)).reshape(joints.shape[:2]),
         surface.distance(beams.reshape(-1, 3)).reshape(beams.shape[:2]),

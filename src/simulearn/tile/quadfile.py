@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 
 from simulearn.errors import InputError
 from simulearn.files import decoded
+from simulearn.surfaces.mending import FARTHEST
 from simulearn.surfaces.meshfile import contents
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+
+MOST_FACES = 100_000  # of a mesh that may have been drawn quad by quad
 
 CODES = {
     "char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h",
@@ -30,6 +33,8 @@ def read_quads(path: Path | str) -> tuple[Array, Indices] | None:
     """
     path = Path(path)
     data = contents(path, "surface")
+    if data.count(b"\nf ") > MOST_FACES:
+        return None
     try:
         if path.suffix.lower() == ".obj":
             vertices, faces = _obj(decoded(data))
@@ -48,8 +53,12 @@ def read_quads(path: Path | str) -> tuple[Array, Indices] | None:
             )
             raise InputError(text, "quads-mixed", str(path))
         places = np.array(vertices, dtype=float).reshape(-1, 3)
-        if quads.min() < 0 or quads.max() >= len(places) or not np.isfinite(places).all():
+        if quads.min() < 0 or quads.max() >= len(places):
             raise ValueError("a face has a vertex that is not there")
+        used, quads = np.unique(quads, return_inverse=True)
+        quads, places = quads.reshape(-1, 4), places[used]
+        if not (np.abs(places) < FARTHEST).all():
+            raise ValueError(f"a vertex has a coordinate that is no number below {FARTHEST:g}")
     except (ValueError, IndexError, KeyError, struct.error, UnicodeDecodeError) as error:
         if isinstance(error, InputError):
             raise
@@ -88,6 +97,8 @@ def _ply(data: bytes) -> tuple[list[list[float]], list[list[int]]]:
             elements.append((words[1], int(words[2]), []))
         elif words[:1] == ["property"]:
             elements[-1][2].append(words[1:])
+    if any(name == "face" and count > MOST_FACES for name, count, _ in elements):
+        return [], []
     read = _text_reader(body) if form == "ascii" else _binary_reader(body, form)
     vertices: list[list[float]] = []
     faces: list[list[int]] = []

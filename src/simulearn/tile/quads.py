@@ -9,6 +9,8 @@ from collections import deque
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from simulearn.errors import InputError, Message
 from simulearn.surfaces import Surface
@@ -29,15 +31,25 @@ def from_quads(vertices: Array, quads: Indices, cells: Cells = (2, 2)) -> Tiling
         cells: of each module.
 
     Raises:
-        InputError: there are too many quads, or one is folded.
+        InputError: there are too many quads, one is folded, or they have one side only.
     """
+    warnings = []
+    _, first = np.unique(np.sort(quads, axis=1), axis=0, return_index=True)
+    if len(first) < len(quads):
+        text = f"{len(quads) - len(first)} quads were there more than once; one of each is kept"
+        warnings.append(Message("quads-twice", "surface", text))
+        quads = quads[np.sort(first)]
     if not 1 <= len(quads) <= MOST:
         text = f"there are {len(quads)} quads, each a module; 1 to {MOST} can be tiled"
         raise InputError(text, "modules", "modules")
+    _convex(vertices, quads)
     quads, turned = _alike_turned(quads)
+    pieces = _pieces(quads)
     normals = vertex_normals(vertices, quads)
     joints = _Joints(vertices, normals, quads, cells)
-    warnings = []
+    if pieces > 1:
+        text = f"the quads are in {pieces} pieces without a common edge, and fit each for itself"
+        warnings.append(Message("quads-pieces", "surface", text))
     if turned:
         text = f"{turned} quads were turned round, so that all have the same side outside"
         warnings.append(Message("quads-turned", "surface", text))
@@ -50,6 +62,20 @@ def from_quads(vertices: Array, quads: Indices, cells: Cells = (2, 2)) -> Tiling
         joints.surface(),
         tuple(warnings),
     )
+
+
+def _convex(vertices: Array, quads: Indices) -> None:
+    """Raise InputError where a quad is none that a module can have the form of."""
+    for k, quad in enumerate(quads.tolist()):
+        name = f"quad {k + 1}"
+        if len(set(quad)) < 4:
+            text = f"{name} has two corners at one place; a module has four sides"
+            raise InputError(text, "quad-folded", name)
+        sides = np.roll(vertices[quad], -1, axis=0) - vertices[quad]
+        turns = np.cross(np.roll(sides, 1, axis=0), sides)
+        if (turns @ turns.T < 0).any():
+            text = f"{name} crosses itself or is bent inwards; its corners go around convexly"
+            raise InputError(text, "quad-folded", name)
 
 
 def vertex_normals(vertices: Array, quads: Indices) -> Array:
@@ -161,8 +187,22 @@ def _key(quad: list[int], i: int, j: int, nx: int, ny: int, number: int) -> tupl
     return (-1, number, i, j)
 
 
+def _pieces(quads: Indices) -> int:
+    """Return in how many parts without a common edge the quads are."""
+    count = len(quads)
+    edges = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    edge = np.unique(edges, axis=0, return_inverse=True)[1].ravel()
+    joined = coo_array((np.ones(4 * count), (np.repeat(np.arange(count), 4), count + edge)),
+                       shape=(count + int(edge.max()) + 1,) * 2)  # fmt: skip
+    return int(connected_components(joined, directed=False)[0])
+
+
 def _alike_turned(quads: Indices) -> tuple[Indices, int]:
-    """Return quads that all have the same side outside, and how many were turned for it."""
+    """Return quads that all have the same side outside, and how many were turned for it.
+
+    Raises:
+        InputError: they have one side only.
+    """
     edges: dict[tuple[int, int], list[tuple[int, bool]]] = {}
     for k, quad in enumerate(quads.tolist()):
         for a, b in zip(quad, quad[1:] + quad[:1], strict=True):
@@ -185,6 +225,9 @@ def _alike_turned(quads: Indices) -> tuple[Indices, int]:
                     turned[m] = turned[k] ^ int(against)
                     queue.append(m)
                     part.append(m)
+                elif turned[m] != turned[k] ^ int(against):
+                    text = "the quads have one side only, as a Moebius strip; cut them somewhere"
+                    raise InputError(text, "quads-one-sided", "surface")
         if 2 * turned[part].sum() > len(part):
             turned[part] = 1 - turned[part]
     # The first corner stays where it is, so that a module keeps its directions.

@@ -27,6 +27,7 @@ from simulearn.simulate.learned import Learned
 from simulearn.tile.alike import Member, alike, averaged
 from simulearn.tile.borders import Fit, fit, pressed, weights
 from simulearn.tile.flatten import arcs
+from simulearn.tile.inset import with_inset
 from simulearn.tile.jobs import Jobs
 from simulearn.tile.patches import Tiling
 from simulearn.tile.searching import ModuleAnswer, ModuleJob, run
@@ -67,6 +68,9 @@ def tile(
         text = f'engine "{settings.engine}" is too slow to tile with; learned and beams are not'
         raise InputError(text, "engine-slow", "engine")
     engine.require(material)
+    if settings.inset_mm is None:
+        settings = replace(settings, inset_mm=material.section.width / 2)
+    tiling = with_inset(tiling, settings.inset_mm or 0.0)
     _fitting(tiling, engine.training.of(material))
     warm("fea")
     warm(settings.engine, settings.model)
@@ -95,7 +99,7 @@ class _Rounds:
         self.material, self.jobs, self.begun = material, jobs, begun
         self.weights = weights(tiling, members, len(kinds))
         firsts = [next(k for k, m in enumerate(members) if m.kind == n) for n in range(len(kinds))]
-        self.normals = tiling.normals[tiling.modules[firsts]]
+        self.normals = tiling.target_normals[firsts]
         self.searching = 0.0
         self.kinds = kinds
 
@@ -143,7 +147,7 @@ class _Rounds:
                 if wide[points].any()
             }
         )
-        targets = averaged(now.targets[self.tiling.modules], self.members, self.kinds)
+        targets = averaged(self.tiling.wanted(now.targets), self.members, self.kinds)
         counts = pressed(self.tiling, self.members, self.weights, now.gaps / self.settings.gap_mm)
         jobs = [self._job(k, targets[k], counts[k], 0, answers[k]) for k in chosen]
         after, changed = list(answers), False
@@ -228,7 +232,7 @@ def _away(answer: ModuleAnswer, targets: Array, counts: Array) -> float:
 
 def _fitting(tiling: Tiling, training: TrainingRange) -> None:
     """Raise InputError where modules are of a size that the material has not been learnt in."""
-    lengths = arcs(tiling.targets, tiling.normals[tiling.modules], tiling.lattice.beams)
+    lengths = arcs(tiling.targets, tiling.target_normals, tiling.lattice.beams)
     least, most = training.beam_length
     short, long = float(lengths.min()), float(lengths.max())
     if least <= short and long <= most:
@@ -243,5 +247,7 @@ def _fitting(tiling: Tiling, training: TrainingRange) -> None:
     else:
         factor = np.sqrt(least / short * most / long)
         size = factor * float(lengths.mean()) * float(np.mean(tiling.cells))
-        text += f". Modules of about {size:.0f} mm (--size {size:.0f}) are right here"
+        drawn = tiling.names[0].startswith("q")
+        option = "draw quads of that size, or give --cells" if drawn else f"--size {size:.0f}"
+        text += f". Modules of about {size:.0f} mm are right here: {option}"
     raise InputError(text, "module-size", name)

@@ -35,14 +35,14 @@ from simulearn.tile.starting import start
 
 Array = NDArray[np.float64]
 
-VERSION = 1  # raise it when a search answers differently, so that older answers are not taken
+VERSION = 2  # raise it when a search answers differently, so that older answers are not taken
 GOOD = 0.05  # mm by the engine, where a search ends
 CORRECTED = 0.15  # mm by finite elements, above which the search may go on from a check
 WORTH = 0.3  # of the error, that the engine must be off by for that
 TRIES = 3  # starts where an answer is not near, or not near enough to its neighbours
 NEAR = 0.25  # mm
 SECONDS = 120.0  # of one search, at most
-MIDDLE = 0.02  # weight of the middle of a beam; a joint's is 1 or more
+MIDDLE = 0.05  # weight of the middle of a beam; a joint's is 1 or more
 SPREAD = 0.3  # of ratios, of starts after the first
 
 

@@ -64,7 +64,10 @@ def interpolated(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Heights:
     Raises:
         InputError: the lists do not fit together, or do not rise.
     """
-    xs, ys, zs = (np.asarray(a, float) for a in (x, y, z))
+    try:
+        xs, ys, zs = (np.asarray(a, float) for a in (x, y, z))
+    except ValueError as error:
+        raise _wrong("z", "is no table; each row has as many numbers as the others") from error
     if zs.shape != (len(ys), len(xs)):
         text = f"is {' x '.join(map(str, zs.shape))} numbers; y and x are {len(ys)} x {len(xs)}"
         raise _wrong("z", text)

@@ -3,6 +3,9 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from simulearn.errors import InputError
 from simulearn.surfaces import Surface, read_surface
 from simulearn.tile.chartfile import read_chart
@@ -10,6 +13,10 @@ from simulearn.tile.patches import Cells, Tiling, counted, from_chart
 from simulearn.tile.quadfile import read_quads
 from simulearn.tile.quads import from_quads
 from simulearn.tile.unrolling import unrolled
+
+Array = NDArray[np.float64]
+
+LEAST, MOST = 20.0, 100_000.0  # mm across: less than a beam, more than all modules
 
 
 def read_tiling(
@@ -40,6 +47,7 @@ def read_tiling(
     quads = read_quads(path) if modules is None and size is None else None
     if quads is not None:
         scale = 1.0 if unit is None else _mm(unit)
+        _sized(path, quads[0] * scale, unit)
         tiling = from_quads(quads[0] * scale, quads[1], cells)
         return tiling if onto is None else _onto(tiling, read_surface(onto, unit))
     if onto is not None:
@@ -55,10 +63,27 @@ def read_tiling(
         chart = read_chart(path)
     else:
         surface = read_surface(path, unit)
-        chart = unrolled(surface)
+        _sized(path, surface.vertices, unit)
+        try:
+            chart = unrolled(surface)
+        except InputError as error:  # a face that is taken whole is likely why
+            why = [m.message for m in surface.warnings if m.code == "surface-untrimmed"]
+            text = "; ".join([f"{path}: {error}", *why])
+            raise InputError(text, error.code, error.where) from error
     count = modules or counted(chart, size or 0.0)
     tiling = from_chart(chart, count, cells, surface)
     return tiling if surface is None else tiling.warned(*surface.warnings)
+
+
+def _sized(path: Path, points: Array, unit: str | None) -> None:
+    """Raise InputError where a surface is of a size that no modules have."""
+    across = float(np.linalg.norm(np.ptp(points, axis=0)))
+    if LEAST <= across <= MOST:
+        return
+    other = "m or --unit in" if across < LEAST else "mm"
+    hint = f"; if that is not meant, say --unit {other}" if unit is None else ""
+    text = f"{path}: is {across:.3g} mm across; from {LEAST:g} to {MOST:g} mm can be tiled{hint}"
+    raise InputError(text, "surface-unit", str(path))
 
 
 def _mm(unit: str) -> float:

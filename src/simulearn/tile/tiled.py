@@ -24,6 +24,9 @@ class Settings:
     Attributes:
         alike_mm: largest distance of targets of modules that are designed as one.
         gap_mm: largest gap between two modules, at which the rounds end.
+        inset_mm: how far the axes of modules' beams keep from their patches' borders; None: half
+            the width of a beam, so that beams of neighbours lie side by side. With 0 they would
+            be in the same place.
         rounds: in which shared borders are brought together, at most.
         seconds: of all of it, at most; None: no limit. What was begun then ends.
         engine: "learned" or "beams".
@@ -34,6 +37,7 @@ class Settings:
 
     alike_mm: float = 0.25
     gap_mm: float = 1.0
+    inset_mm: float | None = None
     rounds: int = 3
     seconds: float | None = None
     engine: str = "learned"

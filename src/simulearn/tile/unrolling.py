@@ -36,13 +36,13 @@ def unrolled(surface: Surface) -> Chart:
         InputError: it is neither a patch with one rim nor a tube with two.
     """
     faces = _one_part(surface)
-    rims = _rims(faces)
+    rims, euler = _rims(faces)
     if len(rims) not in (1, 2):
         what = "is closed and has no rim" if not rims else f"has {len(rims)} rims"
         text = f"the surface {what}; a patch with one or a tube with two can be tiled. Else {HINT}"
         raise InputError(text, "surface-rims", "surface")
     corners = surface.vertices[faces]
-    if _euler(faces) != 2 - len(rims):
+    if euler != 2 - len(rims):
         text = f"the surface has a handle; a patch or a tube can be tiled. Else {HINT}"
         raise InputError(text, "surface-rims", "surface")
     uv = _patch(surface.vertices, faces, rims[0]) if len(rims) == 1 else None
@@ -87,19 +87,21 @@ def _one_part(surface: Surface) -> Indices:
     return surface.faces
 
 
-def _rims(faces: Indices) -> list[Indices]:
-    """Return the rims as loops of vertices, along their faces.
+def _rims(faces: Indices) -> tuple[list[Indices], int]:
+    """Return the rims as loops of vertices, along their faces, and Euler's characteristic.
 
     Raises:
         InputError: faces meet oddly.
     """
     a, b = faces[:, [0, 1, 2]].ravel(), faces[:, [1, 2, 0]].ravel()
-    edges = set(zip(a.tolist(), b.tolist(), strict=True))
-    if len(edges) < len(a):
+    key = np.minimum(a, b) * (int(faces.max()) + 1) + np.maximum(a, b)
+    edges, edge, many = np.unique(key, return_inverse=True, return_counts=True)
+    if (np.abs(np.bincount(edge, np.where(a < b, 1, -1))) != (many == 1)).any():
         text = f"three faces meet at an edge of the surface, or one is turned over; {HINT}"
         raise InputError(text, "surface-rims", "surface")
-    after = {u: v for u, v in edges if (v, u) not in edges}
-    if len(after) < sum((v, u) not in edges for u, v in edges):
+    open_ = many[edge] == 1
+    after = dict(zip(a[open_].tolist(), b[open_].tolist(), strict=True))
+    if len(after) < np.count_nonzero(open_):
         raise InputError(f"two rims of the surface touch; {HINT}", "surface-rims", "surface")
     rims = []
     while after:
@@ -110,12 +112,7 @@ def _rims(faces: Indices) -> list[Indices]:
             loop.append(now)
             now = after.pop(now)
         rims.append(np.array(loop))
-    return rims
-
-
-def _euler(faces: Indices) -> int:
-    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    return len(np.unique(faces)) - len(np.unique(ends, axis=0)) + len(faces)
+    return rims, len(np.unique(faces)) - len(edges) + len(faces)
 
 
 def _patch(vertices: Array, faces: Indices, rim: Indices) -> Array:
@@ -136,9 +133,7 @@ def _patch(vertices: Array, faces: Indices, rim: Indices) -> Array:
         share /= share[-1]
         places = square[k] + share[:, None] * (square[k + 1] - square[k])
         fixed[side[:-1]] = places[:-1]
-    weights = _weights(vertices, faces)
-    uv = np.stack([_harmonic(weights, rim, fixed[:, c]) for c in (0, 1)], axis=1)
-    return uv[faces]
+    return _harmonic(_weights(vertices, faces), rim, fixed)[faces]
 
 
 def _corners(loop: Array) -> Indices:
@@ -264,21 +259,28 @@ def _cotangents(vertices: Array, faces: Indices) -> Array:
 
 
 def _harmonic(weights: csr_array, fixed: Indices, values: Array) -> Array:
-    """Return the harmonic function (V,) with given values at some vertices."""
-    return _solved(weights, np.zeros(weights.shape[0]), fixed, values)
+    """Return the harmonic functions (V, ...) with given values at some vertices."""
+    return _solved(weights, np.zeros((weights.shape[0], *values.shape[1:])), fixed, values)
 
 
 def _solved(matrix: csr_array, right: Array, fixed: Indices, values: Array) -> Array:
-    """Return the solution (V,) of a symmetric system with some values given.
+    """Return the solution (V, ...) of a symmetric system with some values given.
 
     A vertex that no face has keeps 0.
     """
-    x = np.zeros(matrix.shape[0])
+    x = np.zeros_like(right)
     x[fixed] = values
     free = matrix.diagonal() > 0
     free[fixed] = False
     inner = np.flatnonzero(free)
     if len(inner):
         rest = right[inner] - matrix[inner] @ x
-        x[inner] = splu(matrix[inner][:, inner].tocsc()).solve(rest)
+        # Symmetric and positive definite: it needs no pivots, and an order that keeps it sparse.
+        factor = splu(
+            matrix[inner][:, inner].tocsc(),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+        x[inner] = factor.solve(rest)
     return x

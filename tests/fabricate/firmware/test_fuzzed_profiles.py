@@ -16,7 +16,7 @@ from simulearn.grid import make
 SMALL = make("twist", (1, 1), 30.0)
 # More examples, other ones each time: SIMULEARN_FUZZ=5000 pytest tests/fabricate/firmware
 EXAMPLES = int(os.environ.get("SIMULEARN_FUZZ", "0"))
-# What is told rather than refused, and a word of its warning.
+# What is a warning rather than an error, and a word of its warning.
 WARNED = {"oozes": "oozes"}
 
 

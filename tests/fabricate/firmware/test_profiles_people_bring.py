@@ -122,7 +122,7 @@ def test_a_purge_beside_the_bed_needs_a_profile_that_says_the_nozzle_gets_there(
 
 
 @pytest.mark.parametrize(("line", "share"), [("M221 S95", 95), ("M220 S80", 80), ("M221 S0", 0)])
-def test_a_factor_in_start_code_is_set_back_and_told(gcode, line, share):
+def test_a_factor_in_start_code_is_set_back_and_reported(gcode, line, share):
     for base in ("ender-3", "makerbot-2x"):
         start = SOUND
         if base == "makerbot-2x":

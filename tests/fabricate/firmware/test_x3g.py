@@ -16,7 +16,7 @@ MOVED = struct.pack("<B5iIBfH", MOVE, 8889, -8889, 400, -963, 0, 2000, 24, 141.4
 HOMED = struct.pack("<BBIH", HOME_HIGH, 3, 382, 20) + struct.pack("<BBIH", HOME_LOW, 4, 136, 20)
 
 
-def test_commands_are_told_apart():
+def test_commands_are_distinguished():
     place = struct.pack("<B5iI", PLACE, 0, 0, 4000, 0, 0, 166)
     define = struct.pack("<B5i", DEFINE, 0, 0, 4000, 0, 0)
     heat = bytes([136, 0, 3, 2, 205, 0])

@@ -3,11 +3,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import {
-  emptyDocument, hasVertex, readDocument, sameGrid, withGrid,
+  emptyDocument, readDocument, sameGrid, withGrid,
 } from "../../../src/simulearn/studio/page/document/document.js";
 import {
   emptyHistory, record, redoLabel, redone, undoLabel, undone,
 } from "../../../src/simulearn/studio/page/document/history.js";
+import { hasVertex } from "../../../src/simulearn/studio/page/document/vertices.js";
 import { taskOf } from "../../../src/simulearn/studio/page/document/task.js";
 import { assertWellFormed, documentOf, square } from "./support.mjs";
 

@@ -21,9 +21,9 @@ afterEach(() => {
 
 /** Have the server give these answers, one after the other; null: it is not reached, a number: a status. */
 function serve(answers) {
-  const asked = [];
+  const requests = [];
   globalThis.fetch = async (path, { method }) => {
-    asked.push(`${method} ${path}`);
+    requests.push(`${method} ${path}`);
     const answer = answers.shift();
     if (answer === undefined) throw new Error("the page asks once too often");
     if (answer === null) throw new TypeError("failed to fetch");
@@ -31,17 +31,17 @@ function serve(answers) {
     const body = status === 200 ? answer : { detail: "no such job", code: "job-unknown" };
     return { ok: status === 200, status, json: async () => body };
   };
-  return asked;
+  return requests;
 }
 
 test("steps come in parts and are put together", async () => {
-  const asked = serve([running([1, 2]), running(), running([3]), done()]);
+  const requests = serve([running([1, 2]), running(), running([3]), done()]);
   const reports = [];
   const answer = await runJob(begin, (report) => reports.push(report.steps.length), wait).finished;
   assert.deepEqual(answer.steps, [1, 2, 3]);
   assert.deepEqual(answer.result, { grid: 1 });
   assert.deepEqual(reports, [2, 2, 3, 3]);
-  assert.deepEqual(asked, [0, 2, 2, 3].map((n) => `GET /api/jobs/one?since=${n}`));
+  assert.deepEqual(requests, [0, 2, 2, 3].map((n) => `GET /api/jobs/one?since=${n}`));
 });
 
 test("a full answer is followed by the next one at once, even if the job is done", async () => {
@@ -76,11 +76,11 @@ test("a failed job throws its problem", async () => {
 
 test("a cancelled job is asked for its result, also without a connection for a while", async () => {
   const end = running([2], { state: "cancelled", result: { grid: 2 } });
-  const asked = serve([running([1]), null, running([1]), end]);
+  const requests = serve([running([1]), null, running([1]), end]);
   const job = runJob(begin, (report) => { if (report.steps.length === 1) job.cancel(); }, wait);
   const answer = await job.finished;
   assert.deepEqual(answer.result, { grid: 2 });
-  assert.deepEqual(asked.map((line) => line.split(" ")[0]), ["GET", "DELETE", "DELETE", "GET"]);
+  assert.deepEqual(requests.map((line) => line.split(" ")[0]), ["GET", "DELETE", "DELETE", "GET"]);
 });
 
 test("a busy server is asked a few times to begin", async () => {

@@ -28,7 +28,7 @@ test("a brim is no part of the size", () => {
   assert.deepEqual(sizeOf({ ...PATH, role: [5, 1, 3] }), [60.5, 80.5, 0.5]);
 });
 
-test("travels with filament drawn back are told from the others, layer by layer", () => {
+test("travels with filament drawn back are distinguished from the others, layer by layer", () => {
   const { travels } = ribbonsOf({ ...PATH, drawn: [false, true, false] });
   assert.deepEqual(travels.drawn, { points: [150, -50, 0.25, 0, 0, 0.25], start: [0, 2, 2] });
   assert.deepEqual(travels.kept, { points: [], start: [0, 0, 0] });

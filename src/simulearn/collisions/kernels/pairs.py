@@ -181,8 +181,8 @@ def search(
     while top >= 0:
         t0, g0, t1, g1 = stack[top]
         top -= 1
-        way = moved * (t1 - t0)
-        if (g0 + g1 - way) / 2 > -least or way < FINE or t1 - t0 < 1.5 / 2**HALVINGS:
+        distance = moved * (t1 - t0)
+        if (g0 + g1 - distance) / 2 > -least or distance < FINE or t1 - t0 < 1.5 / 2**HALVINGS:
             continue
         t = (t0 + t1) / 2
         set_body(a, sections, joints, bends, f, f + 1, t, pieces, 4)

@@ -44,8 +44,8 @@ def leads_on(pieces: Any, body: int, k: int, x: float, y: float, z: float) -> bo
     if pieces.kinds[body] != 3:
         return False
     axis = pieces.edges[body, k, 2]
-    way = x * axis[0] + y * axis[1] + z * axis[2]
-    return (way > ALONG and k < pieces.counts[body] - 1) or (way < -ALONG and k > 0)
+    along = x * axis[0] + y * axis[1] + z * axis[2]
+    return (along > ALONG and k < pieces.counts[body] - 1) or (along < -ALONG and k > 0)
 
 
 @native(entry=False, allocates=False)

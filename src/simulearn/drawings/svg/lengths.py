@@ -80,7 +80,7 @@ class Viewport:
             words = [words[1] if len(words) > 1 else "center", words[0]]
         shares = {"left": "0%", "top": "0%", "center": "50%", "right": "100%", "bottom": "100%"}
         words = [shares.get(word, word) for word in words] + ["50%"]
-        x, y = (self.length(word, way, font_size) for word, way in zip(words, "xy", strict=False))
+        x, y = (self.length(word, axis, font_size) for word, axis in zip(words, "xy", strict=False))
         return (0.0 if math.isnan(x) else x), (0.0 if math.isnan(y) else y)
 
     def transform(self, text: str, font_size: float = 16.0) -> Matrix | None:

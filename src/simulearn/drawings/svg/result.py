@@ -13,17 +13,17 @@ from simulearn.errors import InputError
 
 MOST_SEGMENTS = 200_000
 FARTHEST = 1e9  # units; no drawing reaches there
-MOST_PROBLEMS = 5  # told one by one
+MOST_PROBLEMS = 5  # listed one by one
 
 
 class Collected:
-    """Lines, curves, what is left out and what is to be told."""
+    """Lines, curves, what is left out and remarks."""
 
     def __init__(self) -> None:
         self._lines: list[Line] = []
         self._curves: list[Curve] = []
         self._left: Counter[tuple[str, str, str]] = Counter()
-        self._told: Counter[str] = Counter()
+        self._remarks: Counter[str] = Counter()
         self._problems: list[str] = []
         self._segments = 0
 
@@ -54,7 +54,7 @@ class Collected:
 
     def tell(self, message: str) -> None:
         """Tell a sentence once; `{}` in it stands for how many things are meant, with the verb."""
-        self._told[message] += 1
+        self._remarks[message] += 1
 
     def problem(self, message: str) -> None:
         """Tell one thing that is wrong in the file."""
@@ -85,7 +85,7 @@ class Collected:
         if len(self._problems) > MOST_PROBLEMS:
             more = len(self._problems) - MOST_PROBLEMS
             messages.append(f"{more} more parts of the file cannot be read.")
-        messages += [text.format(_are(n, "thing")) for text, n in self._told.items()]
+        messages += [text.format(_are(n, "thing")) for text, n in self._remarks.items()]
         filled = sum(n for (_, _, why), n in self._left.items() if why.startswith("is filled"))
         if filled:
             messages.append(

@@ -37,7 +37,7 @@ PROPERTIES = frozenset(
         "y",
     )
 )
-# Those of a style that change what is drawn, too, but are not read: they are told.
+# Those of a style that change what is drawn, too, but are not read: they are reported.
 UNREAD = frozenset(("rotate", "scale", "translate", "transform-box", "d", "offset-path", "zoom"))
 LARGEST_SHEETS = 2**20  # characters
 MOST_CHECKS = 300_000  # of a rule with an element

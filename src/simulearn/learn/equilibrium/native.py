@@ -4,6 +4,7 @@ Many designs are shared among threads in small portions, so that a core that is 
 takes fewer of them. What a design gives does not depend on the others.
 """
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
@@ -38,6 +39,7 @@ from simulearn.mechanics.path import (
     TOLERANCE,
     Grid,
     Path,
+    flat_path,
     grid_of,
     schedule_frames,
     trace,
@@ -49,6 +51,7 @@ from simulearn.mechanics.properties import (
 from simulearn.schedule import FRAMES
 
 Numbers = NDArray[np.float64]
+Solve = Callable[..., Path]  # see `mechanics.path.trace`
 
 STOPS = np.array([0, 2, 4, 6, 8, 10, 11])  # frames on the way to the last alone
 LENGTHS = np.zeros(len(CORRECTIONS.size), np.bool_)  # which outputs are lengths
@@ -85,7 +88,7 @@ def _layers(weights: NetworkWeights, heads: Heads) -> Layers:
         return np.stack([np.asarray(layers[k][part], np.float32) for layers in weights.rounds])
 
     def single(x: Any) -> NDArray[np.float32]:
-        return np.ascontiguousarray(x, np.float32)
+        return np.array(x, np.float32, order="C")  # a copy: read-only arrays have another type
 
     (first, second), (third, last) = weights.encode, weights.decode
     width = len(second[1])
@@ -111,6 +114,7 @@ def predict(
     tolerance: float = TOLERANCE,
     networks: Networks | None = None,
     mesh: float = 1.0,
+    solve: Solve = trace,
 ) -> Prediction:
     """Return all twelve frames of designs of one topology, stacked along T, or the last alone.
 
@@ -121,6 +125,7 @@ def predict(
         tolerance: of the last motion of an iteration, mm.
         networks: the parameters as the kernels take them, where they are at hand.
         mesh: 0 for answers as of the default mesh, 1 for those of the fine one.
+        solve: finds the equilibria of a path's frames.
     """
     networks = networks or networks_of(parameters)
     prints = prints_of(parameters.law, designs, mesh, networks.known)
@@ -136,7 +141,7 @@ def predict(
                 designs.beams, designs.fixed, designs.flat[t], designs.actuators[t], own,
                 prints[t].section, prints[t].properties,
             )  # fmt: skip
-            _predict(networks, prints[t], grid, last, tolerance, out, t)
+            _predict(networks, prints[t], grid, last, tolerance, out, t, solve)
 
     size = max(1, count // (PORTIONS * cores()))
     parts = [range(a, min(a + size, count)) for a in range(0, count, size)]
@@ -147,6 +152,11 @@ def predict(
         for part in parts:
             run(part)
     return out
+
+
+def unsolved(grid: Grid, frames: Any, *_: Any, **__: Any) -> Path:
+    """Return a path that stays flat, for those who need only what is done with a path."""
+    return flat_path(grid, len(frames.released))
 
 
 def _blank(count: int, frames: int, joints: int, beams: int, stress: bool) -> Prediction:
@@ -174,13 +184,14 @@ def _predict(
     tolerance: float,
     out: Prediction,
     t: int,
+    solve: Solve,
 ) -> None:
     """Set the prediction of a design."""
     beams, p = len(grid.ratio), printed.properties
     scale = p.width / REFERENCE_WIDTH
     which = STOPS if last else slice(None)
     frames = schedule_frames(beams, p.creep, which=which)
-    first = trace(grid, frames, small_steps=not last, tolerance=tolerance)
+    first = solve(grid, frames, small_steps=not last, tolerance=tolerance)
     final, warping = first, np.zeros((len(frames.released), 2, beams, 24))
     begin = len(frames.released) - 1 if last else 1
     valence = np.bincount(grid.layout.ends.ravel(), minlength=len(grid.geometry.area)).astype(float)
@@ -199,13 +210,13 @@ def _predict(
         corrections = np.ascontiguousarray(values[..., :12])
         warping = np.ascontiguousarray(values[..., 12:])
         if last:
-            final = _last_corrected(grid, frames, corrections, first, tolerance)
+            final = _last_corrected(grid, frames, corrections, first, tolerance, solve)
         else:
             corrected = frames._replace(corrections=corrections, corrected=True)
-            final = trace(grid, corrected, first, tolerance=tolerance)
+            final = solve(grid, corrected, first, tolerance=tolerance)
     if last and not (first.ended and final.ended):  # frame by frame more converge
         rollout = _blank(1, FRAMES, len(grid.geometry.area), beams, False)
-        _predict(networks, printed, grid, False, tolerance, rollout, 0)
+        _predict(networks, printed, grid, False, tolerance, rollout, 0, solve)
         for to, value in zip(out, rollout, strict=True):
             if value is not None:
                 to[t] = value[0][-1:] if np.ndim(value[0]) > 1 else value[0]
@@ -265,7 +276,7 @@ def seen_halves(grid: Grid, valence: Numbers, scale: float) -> Numbers:
 
 
 def _last_corrected(
-    grid: Grid, frames: Any, corrections: Numbers, first: Path, tolerance: float
+    grid: Grid, frames: Any, corrections: Numbers, first: Path, tolerance: float, solve: Solve
 ) -> Path:
     """Return the path whose last frame is in corrected equilibrium, near the first shape's."""
     ends = np.array([0, len(frames.released) - 1])
@@ -283,7 +294,7 @@ def _last_corrected(
         first.twists[ends],
         jumped=np.zeros(2, np.bool_),
     )
-    short = trace(grid, two, guide, small_steps=False, tolerance=tolerance)
+    short = solve(grid, two, guide, small_steps=False, tolerance=tolerance)
 
     def spread(x: Any, y: Any) -> Any:
         full = x.copy()

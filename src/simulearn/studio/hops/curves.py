@@ -78,7 +78,7 @@ def _line(points: list[list[float]], place: str) -> Line:
 
 
 def _flattened(curve: Any, chord: float) -> Points:
-    """Return points of a curve so close that chords are off by less than asked."""
+    """Return points of a curve so close that chords are off by less than requested."""
     count = ROUGHEST
     while True:
         t = np.linspace(curve.Domain.T0, curve.Domain.T1, 2 * count + 1)

@@ -21,8 +21,8 @@ from simulearn.studio.settings import Settings
 
 Points = NDArray[np.float64]
 
-ASKED = "actuators"  # code of the message that says which ratios were given
-QUIET = ("fixed", "unit", ASKED)  # what is usual: it belongs in no balloon
+RATIOS_GIVEN = "actuators"  # code of the message that says which ratios were given
+QUIET = ("fixed", "unit", RATIOS_GIVEN)  # what is usual: it belongs in no balloon
 STEPS = 1e6  # of a ratio of 1; a layer's name holds no more
 FAR = 3.6  # mm, half the width of a beam: nearer is at the joint
 MOST_PLACES = 100  # of one mend that are messages
@@ -147,7 +147,7 @@ def design_of(
         lines.append(replace(line, layer=layer_of(ratio)) if isinstance(line, Line) else line)
     design = design_from(lines, inputs.points(FIXED.name), modelunits, settings, loud, "layers")
     # The layers are not the person's own.
-    design.remarks[:] = [one for one in design.remarks if one.code != ASKED]
+    design.remarks[:] = [one for one in design.remarks if one.code != RATIOS_GIVEN]
     return replace(design, grid=made_of(design.grid, inputs))
 
 

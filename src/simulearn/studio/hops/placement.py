@@ -45,7 +45,7 @@ class Placement:
 
 
 def unit_of(modelunits: str | None) -> tuple[Unit, list[Message]]:
-    """Return the unit of a model by its name in Rhino, and what is to be told about it.
+    """Return the unit of a model by its name in Rhino, and messages about it.
 
     Raises:
         InputError: Rhino has no such unit, or no length of a beam can be given in it.
@@ -62,7 +62,7 @@ def unit_of(modelunits: str | None) -> tuple[Unit, list[Message]]:
 
 
 def placement_of(points: Points, unit: Unit) -> tuple[Placement, list[Message]]:
-    """Return the plane of all points (n, 3) of a drawing, and what is to be told about it.
+    """Return the plane of all points (n, 3) of a drawing, and messages about it.
 
     Raises:
         InputError: they do not lie in one plane.

@@ -31,6 +31,8 @@ export const state = shallowReactive({
   dialog: null, // { name, ... }: the open dialog and what it is about
   pickVertex: null, // function: the shape view calls it with the vertex that is picked next
   suggestions: null, // { document, state, error, cards, problem }: single changes; see service/suggestions.js
+  measured: null, // { document, result, shapes, ... }: the shape against its goals; see service/measuring.js
+  spots: null, // [[x, y, z]] of a surface, which the scene shows while a panel speaks of them
   search: null, // { document, state, steps, result, ... }: the automatic search; see service/search.js
   drawingShown: false, // whether the panel is open that tells how the document came out of a drawing
   places: null, // { points: [[x, y]], current }: where the plan shows what a panel speaks of

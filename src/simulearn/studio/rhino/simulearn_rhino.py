@@ -67,15 +67,15 @@ class Studio:
 
     def get(self, path: str, patience: float = PATIENCE) -> Any:
         """Return the answer at a path."""
-        return self._asked(urllib.request.Request(self.address + path), patience)
+        return self._send(urllib.request.Request(self.address + path), patience)
 
     def post(self, path: str, body: Any) -> Any:
         """Return the answer to a body."""
         head = {"Content-Type": "application/json", "Accept": "application/json"}
         data = json.dumps(body).encode("utf-8")
-        return self._asked(urllib.request.Request(self.address + path, data, head), PATIENCE)
+        return self._send(urllib.request.Request(self.address + path, data, head), PATIENCE)
 
-    def _asked(self, request: urllib.request.Request, patience: float) -> Any:
+    def _send(self, request: urllib.request.Request, patience: float) -> Any:
         try:
             with self._opener.open(request, timeout=patience) as answer:
                 return json.loads(answer.read().decode("utf-8"))
@@ -147,7 +147,7 @@ def layer_of(curve: dict[str, Any]) -> str:
 def model_of(
     curves: list[dict[str, Any]], units: str, fixed: Point | None = None
 ) -> tuple[dict[str, Any], int]:
-    """Return what the studio is told of curves, and how many are not straight.
+    """Return what the studio receives of curves, and how many are not straight.
 
     Args:
         curves: dicts with points (None where a curve is not straight), layer, text, colour, name.

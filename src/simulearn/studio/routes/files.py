@@ -16,7 +16,12 @@ from simulearn.grid.structure import FARTHEST
 from simulearn.material import materials_of
 from simulearn.simulate import Result, one
 from simulearn.studio.bodies import GridBody, JsonRoute, OwnMaterials, json_response
-from simulearn.studio.documentfile import DocumentGoal, DocumentPrinter, Drawing
+from simulearn.studio.documentfile import (
+    DocumentGoal,
+    DocumentPrinter,
+    DocumentSurface,
+    Drawing,
+)
 from simulearn.studio.downloads import attachment, safe_stem
 from simulearn.studio.exports import check_format, exported
 from simulearn.studio.opening import opened
@@ -26,6 +31,7 @@ from simulearn.studio.simulations import Simulations, engine_of
 from simulearn.studio.turns import Turns
 
 Place = Annotated[list[float], Field(min_length=2, max_length=2)]
+Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 
 router = APIRouter(route_class=JsonRoute, tags=["files"])
 
@@ -47,6 +53,10 @@ class Reading(BaseModel):
     """The name of a file that is opened, and how it is to be read where it is a drawing."""
 
     name: Annotated[str, Field(description="of the file", max_length=1000)] = ""
+    meant: Annotated[
+        Literal["surface", "drawing"] | None,
+        Field(description="of a file that holds lines and triangles"),
+    ] = None
     unit: Annotated[
         str | None,
         Field(
@@ -67,7 +77,7 @@ class Reading(BaseModel):
 
     def options(self) -> Options:
         """Return how a drawing is to be read."""
-        chosen = self.model_dump(exclude={"name"})
+        chosen = self.model_dump(exclude={"name", "meant"})
         layers, without = tuple(self.layers), frozenset(self.without)
         return Options(**chosen | {"layers": layers, "without": without})
 
@@ -100,7 +110,7 @@ class DrawingMend(BaseModel):
 
 
 class DrawingFacts(BaseModel):
-    """What is to be told of a drawing of another program."""
+    """What is reported of a drawing of another program."""
 
     format: str
     unit: DrawingUnit
@@ -115,10 +125,40 @@ class OpenedFile(BaseModel):
     name: str
     grid: Drawing
     goals: list[DocumentGoal]
+    surfaces: list[DocumentSurface]
+    pose: Literal["fixed", "free"]
     printer: DocumentPrinter | None
     materials: Annotated[OwnMaterials, Field(description="of a document only")]
     messages: list[MessageBody]
     drawing: Annotated[DrawingFacts | None, Field(description="of a drawing only")]
+
+
+class SurfaceMessage(MessageBody):
+    """What was mended, guessed or changed in a surface, and where (mm)."""
+
+    places: list[Point]
+
+
+class SurfaceFacts(BaseModel):
+    """A surface as a document takes it, and what is to be told of its file; mm."""
+
+    vertices: list[Point]
+    faces: list[list[int]]
+    format: str
+    triangles: Annotated[int, Field(description="of the file")]
+    apart_mm: Annotated[float, Field(description="from the file's surface, where simplified")]
+    unit: str
+    unit_by: Literal["given", "format", "file", "guess"]
+    size: Point
+    messages: list[SurfaceMessage]
+
+
+class OpenedSurface(BaseModel):
+    """A file that holds no design but a surface."""
+
+    kind: Literal["surface"]
+    name: str
+    surface: SurfaceFacts
 
 
 class ExportBody(BaseModel):
@@ -133,13 +173,20 @@ class ExportBody(BaseModel):
     materials: OwnMaterials = []
 
 
-@router.post("/api/open", response_model=OpenedFile, responses=BUSY, openapi_extra=ANY_FILE)
+@router.post(
+    "/api/open",
+    response_model=OpenedFile | OpenedSurface,
+    responses=BUSY,
+    openapi_extra=ANY_FILE,
+)
 async def open_(request: Request, reading: Annotated[Reading, Query()]) -> Response:
-    """Read a grid, a task, a result, a document or a drawing, known by its contents.
+    """Read a grid, task, result, document, drawing or surface, known by its contents.
 
-    A drawing whose unit is not known, or makes no sense, is refused with the code `unit-unknown`.
-    The problem then has two more members: `size`, width and height in units of the file, and
-    `guess`, the likely unit or null.
+    A file that may be a drawing or a surface is refused with the code `surface-or-drawing`, unless
+    `meant` says which. One whose unit is not known, or makes no sense, is refused with the code
+    `unit-unknown`.
+    The problem then has two more members: `size`, width and height (and depth) in units of the
+    file, and `guess`, the likely unit or null.
     """
     turns: Turns = request.app.state.turns
     data = await request.body()
@@ -148,7 +195,7 @@ async def open_(request: Request, reading: Annotated[Reading, Query()]) -> Respo
 
 def _opened(data: bytes, reading: Reading) -> Response:
     try:
-        return json_response(opened(data, reading.name, reading.options()))
+        return json_response(opened(data, reading.name, reading.options(), reading.meant))
     except UnitError as error:
         more = {"guess": error.guess and asdict(error.guess), "size": list(error.size)}
         raise Problem(422, error.code, str(error), error.where, more=more) from error

@@ -1,7 +1,10 @@
-// The document that the page edits: a grid, goals, what is to be printed on, and own materials.
+// The document that the page edits: a grid, goals, surfaces, what is to be printed on, own materials.
 
 import { FARTHEST, isNumber, isPlace } from "./geometry.js";
+import { GOAL_KEYS, fits, readGoal } from "./kinds.js";
 import { same } from "./numbering.js";
+import { readSurfaces } from "./surfaces.js";
+import { isIndex } from "./vertices.js";
 
 export const SCHEMA = "simulearn.document/1";
 export const GRID_SCHEMA = "simulearn.grid/1";
@@ -12,7 +15,6 @@ const MOST_NAME = 200; // characters
 export const MOST_PROFILE = 65_536; // characters of a profile or a material, as the server
 export const MOST_MATERIALS = 16; // as the server
 export const USUAL_MATERIAL = "pla-hot-water";
-const SECTIONS = ["start", "middle", "end"];
 
 /** Return a document without joints. */
 export function emptyDocument() {
@@ -23,7 +25,9 @@ export function emptyDocument() {
       schema: GRID_SCHEMA,
       joints: [], beams: [], actuators: [], fixed: 0, material: USUAL_MATERIAL,
     },
-    goals: [], // [{ vertex: ["joint", k, "centre"], target: [x, y, z], weight: 1 }]
+    goals: [], // [{ vertex: ["joint", k, "centre"], target: [x, y, z], weight: 1 }]; see kinds.js
+    surfaces: [], // [{ name, vertices: [[x, y, z]], faces: [[i, j, k]] }] that goals name
+    pose: "fixed", // whether goals are seen from the fixed joint, or "free": the shape goes where they fit best
     printer: "ender-3", // a name, or { profile: the text of one }
     materials: [], // the texts of those that the grid may name besides the server's
   };
@@ -62,31 +66,11 @@ export function sameMaterials(a, b) {
   return same(a.materials, b.materials);
 }
 
-/** Return the document with another grid; goals whose vertex it does not have are dropped. */
+/** Return the document with another grid; goals about what it does not have are dropped. */
 export function withGrid(document, grid) {
   if (grid === document.grid) return document;
-  const goals = document.goals.filter(({ vertex }) => hasVertex(grid, vertex));
+  const goals = document.goals.filter((goal) => fits(grid, goal));
   return { ...document, grid, goals: goals.length === document.goals.length ? document.goals : goals };
-}
-
-/** Return whether a grid has a vertex: ["joint", k, place] or ["beam", b, section, place]. */
-export function hasVertex(grid, vertex) {
-  if (!Array.isArray(vertex)) return false;
-  const [part, number, ...rest] = vertex;
-  if (part === "joint")
-    return rest.length === 1 && isIndex(number, grid.joints.length) && isCorner(rest[0], 8);
-  return (
-    part === "beam" && rest.length === 2 && isIndex(number, grid.beams.length)
-    && SECTIONS.includes(rest[0]) && isCorner(rest[1], 4)
-  );
-}
-
-function isIndex(value, count) {
-  return Number.isInteger(value) && value >= 0 && value < count;
-}
-
-function isCorner(value, count) {
-  return value === "centre" || isIndex(value, count);
 }
 
 /** Return the document that data from a file, a link or the server describes.
@@ -97,14 +81,18 @@ export function readDocument(data) {
   const keys = Object.keys(emptyDocument());
   const given = object(data, "the document", keys);
   check(given.schema === SCHEMA, `schema is ${shown(given.schema)}; this page reads "${SCHEMA}"`);
-  const { name = "", goals = [], printer = emptyDocument().printer, materials = [] } = given;
+  const { name = "", goals = [], printer = emptyDocument().printer, materials = [], pose = "fixed" } = given;
   const titled = typeof name === "string" && name.length <= MOST_NAME;
   check(titled, `name is ${shown(name)}; it is a text of at most ${MOST_NAME} characters`);
   const grid = readGrid(given.grid);
   check(Array.isArray(goals) && goals.length <= MOST_GOALS, `goals are not a list of at most ${MOST_GOALS}`);
-  const aims = goals.map((goal, k) => readGoal(goal, k, grid));
+  const surfaces = readSurfaces(given.surfaces ?? [], check);
+  const aims = goals.map((goal, k) => (
+    readGoal(object(goal, `goals[${k}]`, GOAL_KEYS), `goals[${k}]`, grid, surfaces, check)));
+  check(["fixed", "free"].includes(pose), `pose is ${shown(pose)}; it is "fixed" or "free"`);
   return {
-    schema: SCHEMA, name, grid, goals: aims, printer: readPrinter(printer), materials: readMaterials(materials),
+    schema: SCHEMA, name, grid, goals: aims, surfaces, pose,
+    printer: readPrinter(printer), materials: readMaterials(materials),
   };
 }
 
@@ -163,18 +151,6 @@ export function readGrid(data) {
   return {
     schema, joints: places, beams: pairs, actuators: [...ratios], fixed, material: material ?? USUAL_MATERIAL,
   };
-}
-
-function readGoal(goal, k, grid) {
-  const { vertex, target, weight = 1 } = object(goal, `goals[${k}]`, ["vertex", "target", "weight"]);
-  const words = Array.isArray(vertex) ? [...vertex] : [];
-  // Task files may number the sections.
-  if (words[0] === "beam" && isIndex(words[2], 3)) words[2] = SECTIONS[words[2]];
-  check(hasVertex(grid, words), `goals[${k}].vertex is ${shown(vertex)}; the grid has no such vertex`);
-  check(isTarget(target), `goals[${k}].target is ${shown(target)}; a target is [x, y, z] in mm`);
-  const counts = isNumber(weight) && weight >= 0;
-  check(counts, `goals[${k}].weight is ${shown(weight)}; it is a number of at least 0`);
-  return { vertex: words, target: [...target], weight };
 }
 
 /** Return whether a value is a place [x, y, z] that a goal may have. */

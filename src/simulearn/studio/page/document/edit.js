@@ -54,10 +54,10 @@ export function flipActuators(document, beams) {
 
 /** Fix joint k; targets keep their places in the plan. */
 export function setFixed(document, k) {
-  const { grid, goals } = document;
+  const { grid } = document;
   if (k === grid.fixed || !(k in grid.joints)) return document;
-  const moved = seenFrom(goals, grid.joints[grid.fixed], grid.joints[k]);
-  return { ...document, grid: { ...grid, fixed: k }, goals: moved };
+  const next = { ...document, grid: { ...grid, fixed: k } };
+  return seenFrom(next, grid.joints[grid.fixed], grid.joints[k]);
 }
 
 /** Return the selected parts, with the beams between selected joints, to be pasted. */

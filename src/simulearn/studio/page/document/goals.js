@@ -1,8 +1,11 @@
-// Goals: where some vertices of the morphed grid are wanted, and how far from there they are.
+// Goals: where vertices of the morphed grid are wanted, and how far from their targets they are.
 
-import { hasVertex, isTarget } from "./document.js";
+import { isTarget } from "./document.js";
 import { isNumber, limited, rounded } from "./geometry.js";
+import { fits, isPoint } from "./kinds.js";
 import { same } from "./numbering.js";
+import { withoutUnused } from "./surfaces.js";
+import { hasVertex } from "./vertices.js";
 
 const SECTION = { start: 0, middle: 1, end: 2 };
 const MOST_WEIGHT = 1e6; // only ratios of weights count
@@ -18,15 +21,16 @@ export function addGoal(document, vertex, target, weight = 1) {
   return { ...document, goals: [...goals, goal] };
 }
 
-/** Return the number of the goal of a vertex, or null. */
+/** Return the number of the goal that a vertex comes to a target, or null. */
 export function goalOf(document, vertex) {
-  const k = document.goals.findIndex((goal) => same(goal.vertex, vertex));
+  const k = document.goals.findIndex((goal) => isPoint(goal) && same(goal.vertex, vertex));
   return k < 0 ? null : k;
 }
 
 /** Put the target of goal k at [x, y, z]. */
 export function moveGoal(document, k, target) {
-  return isTarget(target) ? change(document, k, { target }) : document;
+  const possible = isTarget(target) && k in document.goals && isPoint(document.goals[k]);
+  return possible ? change(document, k, { target }) : document;
 }
 
 /** Set how much goal k counts; at least 0. */
@@ -34,10 +38,37 @@ export function setWeight(document, k, weight) {
   return isWeight(weight) ? change(document, k, { weight }) : document;
 }
 
-/** Remove goal k. */
+/** Choose the vertices of goal k, on a surface: "joints", "beams" or a list. */
+export function setVertices(document, k, vertices) {
+  const next = { ...document.goals[k], vertices };
+  delete next.vertex;
+  return k in document.goals && fits(document.grid, next) ? replaced(document, k, next) : document;
+}
+
+/** Let the vertices of goal k slide on their surface or not. */
+export function setSlide(document, k, slide) {
+  const { slide: before = true, ...goal } = document.goals[k] ?? {};
+  if (!(k in document.goals) || before === slide) return document;
+  return replaced(document, k, slide ? goal : { ...goal, slide });
+}
+
+/** Set how far off (mm) prints may be of goal k; null: it does not matter. */
+export function setTolerance(document, k, tolerance) {
+  const { tolerance: before = null, ...goal } = document.goals[k] ?? {};
+  const possible = tolerance === null || (isNumber(tolerance) && tolerance > 0);
+  if (!(k in document.goals) || before === tolerance || !possible) return document;
+  return replaced(document, k, tolerance === null ? goal : { ...goal, tolerance: rounded(tolerance) });
+}
+
+/** Let the shape be placed wherever the goals fit best ("free"), or see them from the fixed joint. */
+export function setPose(document, pose) {
+  return pose === document.pose ? document : { ...document, pose };
+}
+
+/** Remove goal k, and its surface where no other goal names it. */
 export function removeGoal(document, k) {
   if (!(k in document.goals)) return document;
-  return { ...document, goals: document.goals.filter((_, n) => n !== k) };
+  return withoutUnused({ ...document, goals: document.goals.filter((_, n) => n !== k) });
 }
 
 /** Return the place [x, y, z] of a vertex in a frame of a result, or null where the result lacks it.
@@ -57,11 +88,12 @@ export function vertexPoint(result, vertex, frame = LAST) {
 
 /** Return how far vertices are from their targets: {each: [mm or null], mean: mm or null}.
  *
- * mean is weighted; vertices that the result lacks do not count.
+ * mean is weighted; vertices that the result lacks do not count, and no goals but points.
  */
 export function goalErrors(result, goals, frame = LAST) {
-  const each = goals.map(({ vertex, target }) => {
-    const point = vertexPoint(result, vertex, frame);
+  const each = goals.map((goal) => {
+    const { vertex, target } = goal;
+    const point = isPoint(goal) ? vertexPoint(result, vertex, frame) : null;
     return point && Math.hypot(...point.map((x, axis) => x - target[axis]));
   });
   let [sum, total] = [0, 0];
@@ -101,13 +133,15 @@ function mean({ numbers, stride, first, count }, frame) {
 function change(document, k, { target, weight }) {
   const goal = document.goals[k];
   if (!goal) return document;
-  const next = {
-    ...goal,
-    target: target?.map(limited) ?? goal.target,
-    weight: weight === undefined ? goal.weight : rounded(weight),
-  };
-  if (same(next.target, goal.target) && next.weight === goal.weight) return document;
-  return { ...document, goals: document.goals.map((one, n) => (n === k ? next : one)) };
+  const next = { ...goal };
+  if (target) next.target = target.map(limited);
+  if (weight !== undefined) next.weight = rounded(weight);
+  if (same(next.target ?? [], goal.target ?? []) && next.weight === goal.weight) return document;
+  return replaced(document, k, next);
+}
+
+function replaced(document, k, goal) {
+  return { ...document, goals: document.goals.map((one, n) => (n === k ? goal : one)) };
 }
 
 function isWeight(value) {

@@ -1,8 +1,9 @@
 // Changes of where joints are: moves, turns, mirror images, sizes.
 
 import { cornerFollower } from "./corners.js";
-import { FARTHEST, between, distance, isNumber, isPoint, limited, rounded } from "./geometry.js";
-import { OTHER_SIDE, followed } from "./numbering.js";
+import { FARTHEST, between, distance, isNumber, isPoint, rounded } from "./geometry.js";
+import { followedGoals, movedWishes } from "./kinds.js";
+import { OTHER_SIDE } from "./numbering.js";
 
 const SAME = 1e-7; // mm; places that are nearer are one
 
@@ -121,7 +122,7 @@ function place(document, numbers, map, { turn: direction = (angle) => angle, mir
   const next = { ...grid, joints };
   const turned = cornerFollower(grid, next, direction, mirrored);
   const others = cornerFollower(grid, next);
-  const goals = followed(document.goals, (vertex) => {
+  const goals = followedGoals(document.goals, (vertex) => {
     const corner = vertex.at(-1);
     if (vertex[0] === "joint") {
       const [, k] = vertex;
@@ -154,7 +155,5 @@ function turn(degrees) {
 
 /** Return the document after a move with targets that have moved alike, if all joints have. */
 function withTargets(next, document, numbers, map) {
-  const { grid, goals } = next;
-  if (next === document || goals.length === 0 || numbers.length < grid.joints.length) return next;
-  return { ...next, goals: goals.map((goal) => ({ ...goal, target: map(goal.target).map(limited) })) };
+  return next === document || numbers.length < next.grid.joints.length ? next : movedWishes(next, map);
 }

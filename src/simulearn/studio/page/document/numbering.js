@@ -1,7 +1,7 @@
 // What refers to joints and beams by number follows them when the numbers change.
 
 import { cornerFollower } from "./corners.js";
-import { limited } from "./geometry.js";
+import { followedGoals, movedWishes } from "./kinds.js";
 import { lasting } from "./structure.js";
 
 const WHERE = { start: 0, middle: 0.5, end: 1 };
@@ -27,21 +27,17 @@ export function rebuild(document, joints, pieces, jointOf) {
   };
   const unchanged = Object.keys(next).every((key) => next[key] === grid[key]);
   const vertexOf = follower(grid, next, jointOf, parts);
-  const goals = followed(document.goals, vertexOf);
+  const goals = followedGoals(document.goals, vertexOf);
   if (unchanged && goals === document.goals) return document;
   const moved = { ...document, grid: unchanged ? grid : next, goals };
   if (jointOf(grid.fixed) !== null || joints.length === 0) return moved;
-  return { ...moved, goals: seenFrom(goals, grid.joints[grid.fixed], joints[fixed]) };
+  return seenFrom(moved, grid.joints[grid.fixed], joints[fixed]);
 }
 
-/** Return goals whose targets keep their places when the origin moves from one point to another. */
-export function seenFrom(goals, before, after) {
+/** Return the document whose targets keep their places when the origin moves from one point to another. */
+export function seenFrom(document, before, after) {
   const [dx, dy] = [before[0] - after[0], before[1] - after[1]];
-  if (goals.length === 0 || (dx === 0 && dy === 0)) return goals;
-  return goals.map((goal) => {
-    const [x, y, z] = goal.target;
-    return { ...goal, target: [x + dx, y + dy, z].map(limited) };
-  });
+  return dx === 0 && dy === 0 ? document : movedWishes(document, ([x, y, z]) => [x + dx, y + dy, z]);
 }
 
 /** Return the joint nearest to a point among those for which use(k), the first of several. */
@@ -101,20 +97,6 @@ function fixedJoint(grid, joints, beams, jointOf) {
   const loops = lasting({ joints, beams }).joints;
   const choice = loops.size ? loops : new Set(beams.length ? beams.flat() : joints.keys());
   return nearestOf(joints, grid.joints[grid.fixed], (k) => choice.has(k));
-}
-
-/** Return goals with vertexOf(vertex), without those that have none or one that is taken. */
-export function followed(goals, vertexOf) {
-  const seen = new Set();
-  const next = [];
-  for (const goal of goals) {
-    const vertex = vertexOf(goal.vertex);
-    const key = vertex?.join();
-    if (vertex === null || seen.has(key)) continue;
-    seen.add(key);
-    next.push(same(vertex, goal.vertex) ? goal : { ...goal, vertex });
-  }
-  return same(next, goals) ? goals : next;
 }
 
 /** Return a function that gives a vertex after the change; null where it is gone. */

@@ -2,6 +2,7 @@
 
 import { h, nextTick, onBeforeUnmount, ref } from "/libraries/vue.js";
 import { addGoal, goalOf, vertexPoint } from "../document/goals.js";
+import { chooseSurface } from "../service/files.js";
 import { edit, select, stale, state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { button } from "./controls.js";
@@ -77,6 +78,7 @@ export const Adding = {
           glyph: picking ? "close" : "target", kind: picking || state.document.goals.length ? "" : "primary",
           disabled: !ready && !picking,
         }),
+        button(t("surface.open"), chooseSurface, { glyph: "surface", title: t("surface.openHint") }),
         picking && h("p", { class: "picking", role: "status" }, t("panels.picking")),
         h("form", { class: "adding-list", onSubmit: addChosen }, [
           h("select", {

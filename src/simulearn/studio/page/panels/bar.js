@@ -1,7 +1,7 @@
 // The bar on top: the design's name, undo and redo, the library, files, settings.
 
 import { h } from "/libraries/vue.js";
-import { chooseFile, copyLink, saveFile } from "../service/files.js";
+import { chooseFile, chooseSurface, copyLink, saveFile, saveTask } from "../service/files.js";
 import { newDocument } from "../service/saving.js";
 import { edit, endMerge, notify, redo, state, undo, view } from "../store.js";
 import { LANGUAGES, t } from "../text/text.js";
@@ -48,9 +48,13 @@ function begin() {
 const files = () => [
   { text: t("common.newFile"), glyph: "plus", run: begin },
   { text: t("common.openFile"), glyph: "open", hint: "Ctrl O", run: chooseFile },
+  { text: t("surface.open"), glyph: "surface", run: chooseSurface },
   "-",
   { text: t("common.saveFile"), glyph: "download", hint: "Ctrl S", run: () => saveFile() },
   { text: t("common.saveGrid"), glyph: "download", run: () => saveFile({ gridOnly: true }) },
+  {
+    text: t("surface.saveTask"), glyph: "download", disabled: state.document.goals.length === 0, run: saveTask,
+  },
   { text: t("common.exportMenu"), glyph: "hand", disabled: !state.server, run: dialog("export") },
   "-",
   { text: t("common.copyLink"), glyph: "link", run: copyLink },

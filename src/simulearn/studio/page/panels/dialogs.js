@@ -3,6 +3,8 @@
 import { h, onBeforeUnmount, onMounted, ref, useId } from "/libraries/vue.js";
 import { dismiss, state } from "../store.js";
 import { t } from "../text/text.js";
+import { saveFile } from "../service/files.js";
+import { number } from "../service/format.js";
 import { keepMine, takeOther } from "../service/saving.js";
 import { button, iconButton } from "./controls.js";
 import { ExportDialog } from "./export.js";
@@ -64,8 +66,43 @@ const LinkDialog = {
   },
 };
 
+const LongLinkDialog = {
+  props: { length: Number, copy: Function, without: Function },
+  render() {
+    const after = (run) => () => {
+      close();
+      run();
+    };
+    return h(Dialog, { title: t("surface.linkTitle"), kind: "narrow" }, {
+      default: () => h("p", t("surface.linkLong", { n: number(this.length) })),
+      actions: () => [
+        button(t("common.saveFile"), after(() => saveFile()), { kind: "primary" }),
+        button(t("surface.linkWithout"), after(this.without)),
+        button(t("surface.linkAnyway"), after(this.copy)),
+      ],
+    });
+  },
+};
+
+const WhichDialog = {
+  props: { file: String, choose: Function },
+  render() {
+    const take = (meant) => () => {
+      close();
+      this.choose({ meant });
+    };
+    return h(Dialog, { title: t("surface.whichTitle", { file: this.file }), kind: "narrow" }, {
+      default: () => h("p", t("surface.which")),
+      actions: () => [
+        button(t("surface.asSurface"), take("surface"), { kind: "primary" }),
+        button(t("surface.asDrawing"), take("drawing")),
+      ],
+    });
+  },
+};
+
 const DIALOGS = {
-  message: MessageDialog, conflict: ConflictDialog, link: LinkDialog,
+  message: MessageDialog, conflict: ConflictDialog, link: LinkDialog, long: LongLinkDialog, which: WhichDialog,
   library: LibraryDialog, export: ExportDialog, help: HelpDialog, unit: UnitDialog, curves: CurvesDialog,
 };
 

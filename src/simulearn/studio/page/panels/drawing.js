@@ -81,8 +81,8 @@ function layer(drawing, { name, colour, lines, taken, ratio }) {
 
 function layersSection(drawing) {
   const { layers, options, messages } = drawing;
-  const told = messages.filter(({ code, where }) => code === "actuators" && where === "colour");
-  if (layers.every(({ name }) => name === "") && told.length === 0 && !options.actuators) return null;
+  const remarks = messages.filter(({ code, where }) => code === "actuators" && where === "colour");
+  if (layers.every(({ name }) => name === "") && remarks.length === 0 && !options.actuators) return null;
   return section(t("drawing.layers"), [
     h("ul", { class: "drawing-layers" }, layers.map((one) => layer(drawing, one))),
     h("label", { class: "picker" }, [
@@ -94,16 +94,16 @@ function layersSection(drawing) {
         key: by, value: by, selected: by === (options.actuators ?? "auto"),
       }, t(`drawing.by_${by}`)))),
     ]),
-    ...told.map(({ message }) => h("p", { class: "note" }, sentence(message))),
+    ...remarks.map(({ message }) => h("p", { class: "note" }, sentence(message))),
   ]);
 }
 
 function curvesSection({ options, messages }) {
-  const told = messages.filter(({ code }) => code === "curves");
+  const remarks = messages.filter(({ code }) => code === "curves");
   const on = options.flatten != null;
-  if (told.length === 0 && !on) return null;
+  if (remarks.length === 0 && !on) return null;
   return section(t("drawing.curves"), [
-    ...told.map(({ message }) => h("p", { class: "note" }, sentence(message))),
+    ...remarks.map(({ message }) => h("p", { class: "note" }, sentence(message))),
     h("label", { class: "checkbox" }, [
       h("input", {
         type: "checkbox", role: "switch", class: "switch", checked: on,
@@ -131,10 +131,10 @@ function mendsSection({ mends, options }) {
 }
 
 function messagesSection({ messages }) {
-  const told = messages.filter(({ code }) => ["reader", "left-out", "moved", "fixed"].includes(code));
-  if (told.length === 0) return null;
+  const remarks = messages.filter(({ code }) => ["reader", "left-out", "moved", "fixed"].includes(code));
+  if (remarks.length === 0) return null;
   return section(t("drawing.messages"), [
-    h("ul", { class: "plain" }, told.map(({ message }, k) => h("li", { key: k }, sentence(message)))),
+    h("ul", { class: "plain" }, remarks.map(({ message }, k) => h("li", { key: k }, sentence(message)))),
   ]);
 }
 

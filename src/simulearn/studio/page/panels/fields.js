@@ -11,11 +11,12 @@ const TENFOLD = 10; // times the step with the shift key
 /** A number with its unit.
  *
  * value: a number, or null where several differ. commit(value, merge): takes a number over; `merge`
- * is a key for edits in a row where the arrow keys step, else null.
+ * is a key for edits in a row where the arrow keys step, else null. none: what no number means, where the
+ * field may be empty; the value is null then.
  */
 export const NumberField = {
   props: {
-    label: String, name: String, value: Number, unit: String, commit: Function, merge: String,
+    label: String, name: String, value: Number, unit: String, commit: Function, merge: String, none: String,
     least: { type: Number, default: -1e5 }, most: { type: Number, default: 1e5 },
     step: { type: Number, default: 1 }, digits: { type: Number, default: DIGITS },
   },
@@ -27,6 +28,7 @@ export const NumberField = {
       props.value === null ? "" : editableNumber(props.value, view.language, props.digits)
     );
     const wrong = (value) => {
+      if (value === null && props.none && !text.value?.trim()) return "";
       if (value === null) return t("common.notNumber");
       const outside = value < props.least || value > props.most;
       const [least, most] = [props.least, props.most].map((limit) => formatNumber(limit, view.language));
@@ -68,7 +70,7 @@ export const NumberField = {
       h("div", { class: ["field-box", { wrong: error.value }] }, [
         h("input", {
           id, type: "text", inputmode: "decimal", autocomplete: "off", spellcheck: false,
-          value: text.value ?? shown(), placeholder: props.value === null ? t("common.various") : undefined,
+          value: text.value ?? shown(), placeholder: props.value === null ? props.none ?? t("common.various") : undefined,
           "aria-label": props.name, "aria-invalid": error.value ? "true" : undefined,
           "aria-describedby": error.value ? `${id}-error` : undefined,
           onFocus: (event) => event.target.select(),

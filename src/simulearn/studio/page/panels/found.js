@@ -1,7 +1,7 @@
 // What a search found and the designs on the way there, each shown in the scene and taken by a button.
 
 import { h, onBeforeUnmount, ref, watch } from "/libraries/vue.js";
-import { mm, number, seconds } from "../service/format.js";
+import { mm, number, percent, seconds } from "../service/format.js";
 import { discardSearch, hideStage, showStage } from "../service/search.js";
 import { takeDesign } from "../service/taking.js";
 import { notify, select, state, undo } from "../store.js";
@@ -89,6 +89,7 @@ export const Found = {
         facts([
           [t("panels.before"), mm(best.start_mm)],
           best.apart_mm !== null && [t("panels.apart"), mm(best.apart_mm)],
+          typeof best.probability?.together === "number" && [t("surface.prints"), percent(best.probability.together)],
           [t("panels.designs"), `${number(best.designs)}, ${seconds(best.seconds)}`],
         ]),
         !better && note("info", t("panels.notBetter")),

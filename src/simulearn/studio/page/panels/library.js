@@ -2,6 +2,7 @@
 
 import { h, onBeforeUnmount, onMounted, reactive } from "/libraries/vue.js";
 import { emptyDocument } from "../document/document.js";
+import { keepingSurfaces } from "../document/surfaces.js";
 import { thumbnail } from "../shape/thumbnail.js";
 import { simulate } from "../service/api.js";
 import { place } from "../service/files.js";
@@ -40,8 +41,8 @@ function words({ name, description }) {
 function use({ name, grid }) {
   const { grid: { material }, printer, materials } = state.document;
   close();
-  place({ ...emptyDocument(), name, grid: { ...grid, material }, printer, materials },
-    t("common.didLibrary", { name }));
+  const design = { ...emptyDocument(), name, grid: { ...grid, material }, printer, materials };
+  place(keepingSurfaces(state.document, design), t("common.didLibrary", { name }));
 }
 
 export const LibraryDialog = {

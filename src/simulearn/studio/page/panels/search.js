@@ -1,6 +1,7 @@
 // The automatic search: what may change, and its progress.
 
 import { h, reactive } from "/libraries/vue.js";
+import { sameWishes } from "../document/kinds.js";
 import { mm, number } from "../service/format.js";
 import { searching, startSearch, stopSearch, timesAsLong } from "../service/search.js";
 import { ANSWERS as OTHERS, ofBest } from "../service/steps.js";
@@ -93,7 +94,7 @@ export const SearchPanel = {
     return () => {
       const { search } = state;
       const changed = search && (search.document.grid !== state.document.grid
-        || search.document.goals !== state.document.goals);
+        || !sameWishes(search.document, state.document));
       return h("section", { class: "part-section", "aria-label": t("panels.search") }, [
         h("h2", t("panels.search")),
         !search && h("p", { class: "note" }, t("panels.searchNote")),

@@ -58,8 +58,10 @@ function card(one, k, error, fresh) {
 
 export const Suggestions = {
   setup() {
-    watch([() => state.document.grid, () => state.document.goals, () => state.answer], askSuggestions,
-      { immediate: true });
+    watch([
+      () => state.document.grid, () => state.document.goals, () => state.document.surfaces,
+      () => state.document.pose, () => state.answer,
+    ], askSuggestions, { immediate: true });
     watch(() => view.theme, drawSuggestions, { flush: "post" });
     onBeforeUnmount(() => {
       dropSuggestions();

@@ -14,6 +14,7 @@ const FARTHEST = 1e5; // mm, as the server
 const WIDTH = 130; // mm that are offered where nothing else speaks for a width
 const CHORD = 0.5; // mm that straight pieces may be off a curve
 const METRE = 1000; // mm
+const OF_SURFACES = ["mm", "cm", "m", "in", "ft"]; // units
 
 /** Return a size in mm with four digits that mean something: "130.6 × 65 mm", "33.02 × 33.02 m". */
 export function sizeWords(size) {
@@ -29,17 +30,20 @@ export function unitWords(name) {
   return text === key ? name : text;
 }
 
-/** Ask for the unit, or the width, of a drawing.
+/** Ask for the unit, or the width, of a drawing, or the unit of a surface.
  *
- * size: width and height in units of the file. guess: the likely unit, or null. now: the unit in use,
- * or null where none is. reason: why the page asks. choose({ unit, width }): one of both is null.
+ * size: width and height (and depth of a surface) in units of the file. guess: the likely unit, or null.
+ * now: the unit in use, or null where none is. reason: why the page asks. choose({ unit, width }): one of
+ * both is null; of a surface always the width.
  */
 export const UnitDialog = {
   props: { file: String, size: Array, guess: Object, now: Object, reason: String, choose: Function },
   setup(props) {
     const id = useId();
+    const flat = props.size.length === 2;
     const first = props.now ?? props.guess;
     const chosen = ref(first && first.name !== "unit" ? first.name : first ? "width" : null);
+    const possible = ({ unit }) => flat || [...OF_SURFACES, first?.name].includes(unit);
     const width = ref(first ? first.mm * props.size[0] : WIDTH);
     const run = () => {
       close();
@@ -69,15 +73,15 @@ export const UnitDialog = {
         props.reason && h("p", sentence(props.reason)),
         h("fieldset", { class: "choices units" }, [
           h("legend", t("drawing.unitAsk")),
-          ...sizesBy(props.size, [props.guess, props.now]).map(({ unit, size }) =>
+          ...sizesBy(props.size, [props.guess, props.now]).filter(possible).map(({ unit, size }) =>
             option(unit, unitWords(unit), sizeWords(size), tagOf(unit))),
-          option("width", t("drawing.byWidth"),
+          flat && option("width", t("drawing.byWidth"),
             props.size[0] > 0 ? sizeWords([width.value, heightFor(props.size, width.value)]) : "–"),
           chosen.value === "width" && typed(),
         ]),
       ],
       actions: () => [
-        button(t("drawing.take"), run, { kind: "primary", disabled: chosen.value === null }),
+        button(t(flat ? "drawing.take" : "surface.unitTake"), run, { kind: "primary", disabled: chosen.value === null }),
         button(t("common.cancel"), close),
       ],
     });

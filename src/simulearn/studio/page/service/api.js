@@ -71,6 +71,9 @@ export async function simulate(grids, { engine = "learned", materials: texts, pr
 
 export const rank = (task, signal) => post("/api/rank", task, signal);
 
+/** Return how far shapes { joints, beams } are from the goals of a task. */
+export const measure = (task, shapes) => post("/api/measure", { task, shapes });
+
 /** Return the printer that the text of a profile describes, or the text of a printer's profile. */
 export const readProfile = (profile) => post("/api/profile", { profile });
 export const profileText = async (name) => (await request(`/api/printers/${name}`, { accept: "*/*" })).text();
@@ -109,10 +112,10 @@ export const loadDocument = (id) => json(`/api/documents/${id}`);
 export const saveDocument = (id, revision, document, { last = false } = {}) =>
   json(`/api/documents/${id}`, { method: "PUT", body: { revision, document }, keepalive: last });
 
-/** Return {grid, goals, name, messages, drawing} of a file that the user opens.
+/** Return {grid, goals, name, messages, drawing} of a file that the user opens, or {name, surface}.
  *
  * options: how a drawing is to be read: { unit, width, layers, flatten, actuators, tolerance, without };
- * those that are null are left to the server. layers are names.
+ * those that are null are left to the server. layers are names. meant: "drawing" or "surface".
  */
 export async function openFile(file, options = {}) {
   const query = new URLSearchParams({ name: file.name });

@@ -7,26 +7,52 @@ const INDEX = "simulearn.designs"; // [{ id, name, time, saved }], the newest fi
 const MOST_TEXT = 1_500_000; // characters of one copy; browsers keep some five million in all
 const keyOf = (id) => `simulearn.design.${id}`;
 
-const texts = new WeakMap(); // document -> JSON; documents never change
+const texts = new WeakMap(); // document, or vertices of a surface -> JSON; they never change
 
-function json(document) {
-  if (!texts.has(document)) texts.set(document, JSON.stringify(document));
-  return texts.get(document);
+function json(key, value = key) {
+  if (!texts.has(key)) texts.set(key, JSON.stringify(value));
+  return texts.get(key);
+}
+
+/** Return a table of triangles, which many steps of undo share, and text(document) with numbers in it. */
+function sharing() {
+  const numbers = new Map(); // vertices -> number
+  const meshes = [];
+  const numberOf = ({ vertices, faces }) => {
+    if (!numbers.has(vertices)) {
+      numbers.set(vertices, meshes.length);
+      meshes.push(json(vertices, { vertices, faces }));
+    }
+    return numbers.get(vertices);
+  };
+  const text = (document) => {
+    if (document.surfaces.length === 0) return json(document);
+    const surfaces = document.surfaces.map((surface) => ({ name: surface.name, mesh: numberOf(surface) }));
+    return JSON.stringify({ ...document, surfaces });
+  };
+  return { meshes, text };
+}
+
+/** Return a document of a copy, with the triangles of its surfaces from the table. */
+function whole(document, meshes) {
+  const surfaces = (document.surfaces ?? []).map(({ name, mesh }) => ({ name, ...meshes[mesh] }));
+  return readDocument({ ...document, surfaces }); // whose surfaces are these arrays, shared again
 }
 
 /** Return {revision, saved, document, history} of a copy, or null. */
 export function readCopy(id) {
   try {
-    const { revision, saved, document, past, future } = JSON.parse(localStorage.getItem(keyOf(id)));
-    return { revision, saved, document: readDocument(document), history: readHistory(past, future) };
+    const { meshes = [], revision, saved, document, past, future } = JSON.parse(localStorage.getItem(keyOf(id)));
+    const history = readHistory(past, future, meshes);
+    return { revision, saved, document: whole(document, meshes), history };
   } catch {
     return null; // none, no storage, or one of a page that wrote something else
   }
 }
 
-function readHistory(past, future) {
+function readHistory(past, future, meshes) {
   try {
-    const steps = (list) => list.map(({ label, document }) => ({ label, document: readDocument(document) }));
+    const steps = (list) => list.map(({ label, document }) => ({ label, document: whole(document, meshes) }));
     return { ...emptyHistory(), past: steps(past), future: steps(future) };
   } catch {
     return emptyHistory();
@@ -56,11 +82,14 @@ export function writeCopy(id, { revision, saved, document, history }) {
 
 function copyText({ revision, saved, document, history }, most) {
   let room = most;
+  const { meshes, text: textOf } = sharing();
+  const now = textOf(document);
   const steps = (list) => {
     const kept = [];
     for (const { label, document: before } of list.toReversed()) {
-      const text = `{"label":${JSON.stringify(label)},"document":${json(before)}}`;
-      room -= text.length;
+      const known = meshes.length;
+      const text = `{"label":${JSON.stringify(label)},"document":${textOf(before)}}`;
+      room -= text.length + meshes.slice(known).join().length;
       if (room < 0) break;
       kept.unshift(text);
     }
@@ -68,8 +97,8 @@ function copyText({ revision, saved, document, history }, most) {
   };
   const past = steps(history.past);
   const future = steps(history.future);
-  const head = `"revision":${revision},"saved":${saved},"document":${json(document)}`;
-  return `{${head},"past":${past},"future":${future}}`;
+  const head = `"revision":${revision},"saved":${saved},"document":${now}`;
+  return `{${head},"meshes":[${meshes}],"past":${past},"future":${future}}`;
 }
 
 function remove(id) {

@@ -36,6 +36,8 @@ export function changesOf(grid, made) {
   return { joints, actuators };
 }
 
+const wishesOf = ({ goals, surfaces, pose }) => ({ goals, surfaces, pose });
+
 /** Return the document with a design that was made from `origin`, an earlier state of it.
  *
  * The goals stay, unless joints or beams have been numbered anew since: then they are the origin's.
@@ -43,5 +45,5 @@ export function changesOf(grid, made) {
 export function withDesign(document, origin, grid) {
   const alike = document.grid.joints.length === grid.joints.length
     && same(document.grid.beams.flat(), grid.beams.flat());
-  return withGrid(alike ? document : { ...document, goals: origin.goals }, grid);
+  return withGrid(alike ? document : { ...document, ...wishesOf(origin) }, grid);
 }

@@ -4,12 +4,13 @@
 import { ref } from "/libraries/vue.js";
 import { readGrid, sameGrid, withGrid } from "../document/document.js";
 import { allMends } from "../document/imported.js";
+import { isOfAll } from "../document/surfaces.js";
 import { edit, select, state, view } from "../store.js";
 import { t } from "../text/text.js";
 import { openFile } from "./api.js";
 
 const phone = globalThis.matchMedia("(max-width: 599px)"); // as in panels/media.js
-const known = new WeakMap(); // grid -> what is told of the drawing that it came from
+const known = new WeakMap(); // grid -> what is known of the drawing that it came from
 const changes = ref(0); // in `known`
 let numbers = 0;
 let wanted = null; // options for which the drawing is still to be read
@@ -26,10 +27,10 @@ export const refusals = ref(0);
  */
 export function drawingOf(document) {
   const found = changes.value >= 0 ? known.get(document.grid) : null; // asks for `changes`, which is watched
-  return found && document.goals.length === 0 ? found : null;
+  return found && document.goals.every(isOfAll) ? found : null;
 }
 
-/** Show what is to be told of the drawing that has become the document: `found` is the server's answer. */
+/** Show the report of the drawing that has become the document: `found` is the server's answer. */
 export function showDrawing(file, options, found) {
   remember(file, options, found);
   Object.assign(state, { tab: "design", drawingShown: true });

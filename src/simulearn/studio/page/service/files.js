@@ -1,35 +1,53 @@
-// Files in and out: designs and drawings of other programs, opening, dropping, pasting, saving, exporting, links.
+// Files in and out: designs, drawings and surfaces of other programs, opening, dropping, pasting, saving,
+// exporting, links.
 
 import { emptyDocument, readDocument, sameGrid, sameMaterials, samePrinter } from "../document/document.js";
+import { removeGoal } from "../document/goals.js";
 import { encode } from "../document/link.js";
+import { keepingSurfaces } from "../document/surfaces.js";
+import { taskFile } from "../document/task.js";
 import { edit, notify, select, state, undo } from "../store.js";
 import { t } from "../text/text.js";
 import { exportFile, openFile } from "./api.js";
 import { download } from "./downloads.js";
 import { showDrawing } from "./drawings.js";
-import { isMaterial, openMaterial } from "./materials.js";
+import { chosenOwn, isMaterial, openMaterial } from "./materials.js";
 import { isProfile, openProfile } from "./printers.js";
+import { takeSurface } from "./surfaces.js";
 
-const ENDINGS = ".json,.dxf,.svg,.3dm,.csv,.txt,.obj,.html,.toml,application/json,image/svg+xml";
+const SURFACES = ".stl,.obj,.ply,.glb,.3dm";
+const ENDINGS = `.json,.dxf,.svg,.csv,.txt,.html,.toml,${SURFACES},application/json,image/svg+xml`;
+const LONG = 8000; // characters of a link that many programs do not pass on whole
 const PASTED = [[/^<(svg|\?xml|!--)/, "common.pastedDrawing"], [/^[{[]/, "common.pasted"]]; // how it begins
 const LATE = 300; // ms after which the page says that it reads a file
 const MOST_PASTED = 4_000_000; // characters; the server takes no more either
 
 /** Let the user choose a file, and open it. */
 export function chooseFile() {
+  choose(ENDINGS, {});
+}
+
+/** Let the user choose the file of a surface, and make it a goal. */
+export function chooseSurface() {
+  choose(SURFACES, { meant: "surface" });
+}
+
+function choose(accept, options) {
   const input = globalThis.document.createElement("input");
-  Object.assign(input, { type: "file", accept: ENDINGS });
-  input.addEventListener("change", () => input.files.length && open(input.files[0]));
+  Object.assign(input, { type: "file", accept });
+  input.addEventListener("change", () => input.files.length && open(input.files[0], options));
   input.click();
 }
 
 let openings = 0; // only the last one counts
 
-/** Replace the design by that of a file, as one edit; a profile or material takes the place of its like.
+/** Replace the design by that of a file, as one edit; a profile or material takes the place of its like,
+ * a surface becomes a goal.
  *
- * options: how a drawing is to be read; where its unit is not known, the page asks for it.
+ * options: how a drawing is to be read; where its unit is not known, the page asks for it. replaces: the
+ * name of the surface that is read again.
  */
-export async function open(file, options = {}) {
+export async function open(file, options = {}, replaces = null) {
   if (isProfile(file)) return (await isMaterial(file) ? openMaterial : openProfile)(file);
   openings += 1;
   const turn = openings;
@@ -37,17 +55,19 @@ export async function open(file, options = {}) {
   let [found, document] = [null, null];
   try {
     found = await openFile(file, options);
-    document = documentOf(found);
+    if (!found.surface) document = documentOf(found);
   } catch (problem) {
-    if (turn === openings) refuse(file, problem, options);
+    if (turn === openings) refuse(file, problem, options, replaces);
     return null;
   } finally {
     clearTimeout(late);
     if (turn === openings) state.opening = null;
   }
   if (turn !== openings) return null;
+  if (found.surface) return takeSurface(file, options, found, replaces);
   const { drawing, messages = [] } = found;
-  place(document, t("common.didOpen", { file: file.name }));
+  const whole = found.kind === "document" || found.kind === "task"; // with its own goals, or none
+  place(whole ? document : keepingSurfaces(state.document, document), t("common.didOpen", { file: file.name }));
   if (drawing) showDrawing(file, options, found);
   else if (messages.length) {
     const title = t("common.openNotes", { file: file.name });
@@ -57,19 +77,25 @@ export async function open(file, options = {}) {
 }
 
 /** Return the document of an opened file; a drawing keeps the material and the printer. */
-function documentOf({ kind, grid, goals = [], name, printer, drawing, materials }) {
+function documentOf({ kind, grid, goals = [], surfaces = [], pose, name, printer, drawing, materials }) {
   const { schema } = emptyDocument();
   const { material } = drawing ? state.document.grid : grid;
   const by = printer || state.document.printer;
   const own = kind === "document" ? materials : state.document.materials;
-  return readDocument({ schema, name, grid: { ...grid, material }, goals, printer: by, materials: own });
+  return readDocument({
+    schema, name, grid: { ...grid, material }, goals, surfaces, pose, printer: by, materials: own,
+  });
 }
 
 /** Say why a file cannot be opened, or ask for what is missing to open it. */
-export function refuse(file, problem, options) {
+export function refuse(file, problem, options, replaces = null) {
   const { code, message, errors = [] } = problem;
   const reason = message.replace(/^[^:]*: /, ""); // the title names the file
-  const ask = { reason, choose: (choice) => open(file, { ...options, ...choice }) };
+  const ask = { reason, choose: (choice) => open(file, { ...options, ...choice }, replaces) };
+  if (code === "surface-or-drawing") {
+    state.dialog = { name: "which", file: file.name, choose: ask.choose };
+    return;
+  }
   if (code === "unit-unknown") {
     state.dialog = { name: "unit", file: file.name, size: problem.size, guess: problem.guess, ...ask };
     return;
@@ -99,6 +125,15 @@ export function saveFile({ gridOnly = false } = {}) {
   download(new Blob([text], { type: "application/json" }), `${fileName()}${gridOnly ? ".grid" : ""}.json`);
 }
 
+/** Save grid, goals and surfaces as a task file, which the command line searches with. */
+export function saveTask() {
+  const { document } = state;
+  const text = JSON.stringify(taskFile(document), null, document.surfaces.length ? 0 : 1);
+  download(new Blob([text], { type: "application/json" }), `${fileName()}.task.json`);
+  if (document.materials.length && chosenOwn() >= 0)
+    notify(t("surface.taskMaterial", { name: document.grid.material }));
+}
+
 /** Save the result of an engine in one of the server's formats. */
 export async function saveExport(format, engine) {
   const { grid, materials } = state.document;
@@ -112,9 +147,23 @@ export function fileName() {
   return plain.slice(0, 60) || "design";
 }
 
-/** Copy a link that holds the whole document. */
+/** Copy a link that holds the whole document; ask first where surfaces make it very long. */
 export async function copyLink() {
   const link = `${location.origin}/#design=${await encode(state.document)}`;
+  if (link.length <= LONG) return copy(link);
+  const without = async () => copy(`${location.origin}/#design=${await encode(plain(state.document))}`);
+  state.dialog = { name: "long", length: link.length, copy: () => copy(link), without };
+  return null;
+}
+
+/** Return a document without the goals that have surfaces. */
+function plain(document) {
+  const names = document.surfaces.map(({ name }) => name);
+  const named = ({ surface, away_from: body }) => names.includes(surface) || names.includes(body);
+  return document.goals.reduceRight((before, goal, k) => (named(goal) ? removeGoal(before, k) : before), document);
+}
+
+async function copy(link) {
   try {
     await navigator.clipboard.writeText(link);
     notify(t("common.linkCopied"));

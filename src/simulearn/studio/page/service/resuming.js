@@ -47,9 +47,11 @@ function read() {
 /** Return the open document where a job is about its grid: then it is not of an earlier design. */
 function known(document) {
   const alike = sameGrid(document.grid, state.document.grid) && sameMaterials(document, state.document)
-    && JSON.stringify(document.goals) === JSON.stringify(state.document.goals);
+    && wishes(document) === wishes(state.document);
   return alike ? state.document : document;
 }
+
+const wishes = ({ goals, surfaces, pose }) => JSON.stringify([goals, surfaces, pose]);
 
 function keep() {
   const jobs = {};

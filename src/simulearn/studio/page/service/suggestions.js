@@ -4,6 +4,7 @@
 //   error: mean distance of the design itself, mm,
 //   cards: {grid, error, result, picture, changes} the best first.
 
+import { sameWishes } from "../document/kinds.js";
 import { taskOf } from "../document/task.js";
 import { thumbnail } from "../shape/thumbnail.js";
 import { state } from "../store.js";
@@ -21,7 +22,7 @@ const retries = latest(AGAIN);
 /** Return whether the suggestions are those of the current design and goals. */
 export function freshSuggestions() {
   const of = state.suggestions?.document;
-  return Boolean(of) && of.grid === state.document.grid && of.goals === state.document.goals;
+  return Boolean(of) && of.grid === state.document.grid && sameWishes(of, state.document);
 }
 
 /** Ask for suggestions for the current document, if it has goals and a shape. */

@@ -50,9 +50,9 @@ uniform vec2 size;
 void main() {
   vec4 place = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   vec4 ahead = projectionMatrix * modelViewMatrix * vec4(position + normal, 1.0);
-  vec2 way = (ahead.xy / ahead.w - place.xy / place.w) * size;
-  float wide = (mark > 0.9 ? 3.2 : 2.0) * min(1.0, length(way) / 0.5);
-  place.xy += normalize(way + vec2(1e-6)) * 2.0 * wide / size * place.w;
+  vec2 along = (ahead.xy / ahead.w - place.xy / place.w) * size;
+  float wide = (mark > 0.9 ? 3.2 : 2.0) * min(1.0, length(along) / 0.5);
+  place.xy += normalize(along + vec2(1e-6)) * 2.0 * wide / size * place.w;
   gl_Position = mark > 0.0 ? place : vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 

@@ -1,28 +1,32 @@
 // What is written and can be taken hold of in the view: dimensions, heights, points that become goals,
-// targets and the handles that move one. From the page's state to items of the annotations.
+// targets, lines to surfaces and the handles that move a target. From the page's state to items of the annotations.
 
 import { moveGoal, vertexPoint } from "../document/goals.js";
+import { isPoint } from "../document/kinds.js";
 import { edit, endMerge, select, state, view } from "../store.js";
 import { t } from "../text/text.js";
+import { linesOf } from "./compared.js";
 import { dimensionItems } from "./dimensions.js";
 import { dragged, gizmoItems, LENGTH } from "./gizmo.js";
 import { skinBounds } from "./skin.js";
-import { centreAt } from "./topology.js";
+import { centreAt, LAST } from "./topology.js";
 import { number, partOf } from "./words.js";
 
 const MOST_HEIGHTS = 40; // numbers that are still read
 const MOST_DOTS = 160; // points that are offered: above, beams have none
+const NEAR = 0.2; // mm, a line as short as the printer is coarse is not drawn
 const TENTH = 10; // targets are set in tenths of a millimetre
 
 const mm = (value) => t("shape.mm", { mm: number(value) });
 
-/** Return the items for what the view shows: its skin, the result and whether goals are worked on. */
-export function noteItems(viewer, result, { goals }) {
+/** Return the items for what the view shows: its skin, the result (and the engine's own, from which that
+ * was placed), and whether goals are worked on. */
+export function noteItems(viewer, { result, own }, { goals }) {
   const items = [];
   if (view.dimensions) items.push(...dimensionItems(skinBounds(viewer.body.skin), mm));
   if (view.heights) items.push(...heightItems(result));
   items.push(...collisionItems(result));
-  if (goals) items.push(...pointItems(result), ...targetItems(result));
+  if (goals) items.push(...lineItems(own), ...spotItems(), ...pointItems(result), ...targetItems(result));
   return items;
 }
 
@@ -44,6 +48,21 @@ function heightItems(result) {
   return joints.slice(0, MOST_HEIGHTS).map(({ joint, at }) => ({
     id: `height-${joint}`, kind: "text", className: "note-height", at, shift: [0, -14], text: number(at[2]),
   }));
+}
+
+/** Lines from where parts of the shape are to where they should be, as on a surface, at the end of the motion. */
+function lineItems(own) {
+  if (view.frame !== LAST) return [];
+  const far = linesOf(own).filter(([a, b]) => Math.hypot(...a.map((x, axis) => x - b[axis])) > NEAR);
+  return far.slice(0, MOST_DOTS).flatMap(([a, b], k) => [
+    { id: `line-${k}`, kind: "line", a, b, className: "note-goal" },
+    { id: `line-${k}-end`, kind: "dot", at: b, className: "note-goal" },
+  ]);
+}
+
+/** Rings at places of a surface that a panel speaks of. */
+function spotItems() {
+  return (state.spots ?? []).map((at, k) => ({ id: `spot-${k}`, kind: "ring", className: "note-collision", at }));
 }
 
 /** The points of the shape that can become goals, while the page waits for one. */
@@ -68,6 +87,7 @@ function pointItems(result) {
 
 function targetItems(result) {
   return state.document.goals.flatMap((goal, k) => {
+    if (!isPoint(goal)) return [];
     const { vertex, target } = goal;
     const point = vertexPoint(result, vertex, view.frame);
     const chosen = state.selection.goal === k;
@@ -81,7 +101,7 @@ function targetItems(result) {
     };
     if (!point) return [marker];
     return [
-      { id: `way-${k}`, kind: "line", a: point, b: target, className },
+      { id: `line-${k}`, kind: "line", a: point, b: target, className },
       { id: `place-${k}`, kind: "dot", at: point, className },
       {
         id: `apart-${k}`, kind: "text", at: target, shift: [0, chosen ? 20 : -16], className,
@@ -95,14 +115,14 @@ function targetItems(result) {
 /** Move target k by keys: arrows in the plane, PageUp and PageDown along z; 1 mm, with shift 10. */
 function nudge(event, k) {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const way = {
+  const step = {
     ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowDown: [0, -1, 0], ArrowUp: [0, 1, 0],
     PageDown: [0, 0, -1], PageUp: [0, 0, 1],
   }[event.key];
   if (event.key === "Enter" || event.key === " ") select({ goal: k });
-  else if (way) {
+  else if (step) {
     const { target } = state.document.goals[k];
-    move(k, target.map((x, axis) => x + way[axis] * (event.shiftKey ? 10 : 1)));
+    move(k, target.map((x, axis) => x + step[axis] * (event.shiftKey ? 10 : 1)));
   } else return;
   event.preventDefault();
   event.stopPropagation();
@@ -118,7 +138,7 @@ function move(k, target) {
 /** Return project -> handles of the selected target, or null where none is. */
 export function handlesOf(viewer) {
   const k = state.selection.goal;
-  if (!(k in state.document.goals)) return null;
+  if (!(k in state.document.goals) || !isPoint(state.document.goals[k])) return null;
   const onPress = (event, handle) => drag(viewer, event, handle, k);
   return (project) => {
     const { target } = state.document.goals[k] ?? {};

@@ -44,8 +44,8 @@ export const Playback = {
     };
     const onKeydown = (event) => {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
-      const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
-      if (way) show(nextFrame(view.frame, way));
+      const delta = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+      if (delta) show(nextFrame(view.frame, delta));
       else if (event.key === "Home") show(0);
       else if (event.key === "End") show(LAST);
       else return;

@@ -3,9 +3,11 @@
 import { computed, h, onBeforeUnmount, onMounted, ref, shallowRef, watch } from "/libraries/vue.js";
 import { preparing, select, stale, state, view } from "../store.js";
 import { t } from "../text/text.js";
+import { comparisonOf } from "./compared.js";
 import { deviation } from "./deviation.js";
 import { Legend } from "./legend.js";
 import { handlesOf, noteItems } from "./notes.js";
+import { placedResult } from "./placed.js";
 import { Playback, togglePlay } from "./playback.js";
 import { Summary } from "./summary.js";
 import { Toolbar } from "./toolbar.js";
@@ -14,19 +16,32 @@ import { hasValues } from "./values.js";
 import { canDraw, createViewer } from "./viewer.js";
 import { moment, summaryOf } from "./words.js";
 
+const NONE = [];
 const LATE = 150; // ms that a shape may be of an earlier design before it is dimmed
 const QUIET = 900; // ms without a change until the shape is read out
 const DIM = 0.55; // of the shape's colours towards the canvas
 const PREFERS_STILL = globalThis.matchMedia("(prefers-reduced-motion: reduce)");
 
-/** Return what is drawn: { result, grid, label } of the preview, else of the answer; or null. */
+/** Return what is drawn: { own, result, grid, label } of the preview, else of the answer; or null.
+ *
+ * result is `own`, the engine's, or where that is compared with goals, if it may be placed anywhere.
+ */
 function source() {
   const { preview, answer } = state;
   if (preview?.result && preview.result.ok !== false) {
-    const { result, label } = preview;
-    return { result, grid: preview.grid ?? preview.document?.grid ?? result.grid, label };
+    const { result: own, label } = preview;
+    return { own, result: compared(own), grid: preview.grid ?? preview.document?.grid ?? own.grid, label };
   }
-  return answer ? { result: answer.result, grid: answer.document.grid, label: "" } : null;
+  if (!answer) return null;
+  const { result: own, document: { grid } } = answer;
+  return { own, result: compared(own), grid, label: "" };
+}
+
+/** Return a result in the place where it is compared with goals. */
+function compared(result) {
+  if (state.document.pose !== "free" || state.tab !== "goals") return result;
+  const { place } = comparisonOf(result) ?? {};
+  return place ? placedResult(result, place) : result;
 }
 
 /** Return the result of the check by finite elements, where it is of the shown grid. */
@@ -59,6 +74,7 @@ export const Shape = {
     const printing = computed(() => state.tab === "print" && Boolean(state.print?.toolpath));
     const goals = computed(() => state.tab === "goals");
     const prints = computed(shownPrints);
+    const surfaces = computed(() => (goals.value ? state.document.surfaces : NONE));
     const distance = computed(() => (other.value && shown.value
       ? deviation(shown.value.result, other.value, Math.round(view.frame)) : null));
     let [triad, dimmer, reader] = [null, 0, 0];
@@ -76,7 +92,7 @@ export const Shape = {
     const notes = () => {
       const on = shown.value && !printing.value;
       viewer.value.setNotes(
-        on ? noteItems(viewer.value, shown.value.result, { goals: goals.value }) : [],
+        on ? noteItems(viewer.value, shown.value, { goals: goals.value }) : [],
         on && goals.value ? handlesOf(viewer.value) : null,
       );
     };
@@ -120,7 +136,9 @@ export const Shape = {
       watch(() => view.overlay, (on) => viewer.value.overlay(on ? other.value : null));
       watch(() => view.colour, colour);
       watch(() => view.ghost, (on) => viewer.value.setGhost(on));
-      watch(() => view.ground, (on) => viewer.value.setGround(on), { immediate: true });
+      watch(() => view.ground && shown.value?.result === shown.value?.own, (on) => viewer.value.setGround(on),
+        { immediate: true });
+      watch(surfaces, (list) => viewer.value.setSurfaces(list), { immediate: true });
       watch(() => view.dimensions, (on) => viewer.value.setRoomy(on), { immediate: true });
       watch(() => view.parallel, (on) => viewer.value.camera.setParallel(on), { immediate: true });
       watch(() => [state.selection, state.hover], marks);
@@ -129,6 +147,7 @@ export const Shape = {
       watch(() => [
         view.frame, view.dimensions, view.heights, view.language, goals.value, printing.value,
         state.pickVertex, goals.value && state.document.goals, state.selection.goal, state.hover?.goal,
+        goals.value && state.measured, state.spots,
       ], notes);
       watch(() => [printing.value && state.print.toolpath, state.print?.layer, state.print?.travels], () => {
         const path = printing.value ? state.print.toolpath : null;
@@ -148,7 +167,7 @@ export const Shape = {
     };
     const words = () => {
       if (!shown.value) return t("shape.empty");
-      const { title, size, notes: more } = summaryOf(shown.value.result);
+      const { title, size, notes: more } = summaryOf(shown.value.own);
       return [title, size, ...more.map(({ text }) => text), moment(view.frame)].join(", ");
     };
     const press = (part, event) => {
@@ -203,7 +222,7 @@ export const Shape = {
           state.busy ? preparing() && h("p", t("common.preparing")) : h("p", t("shape.emptyHint")),
         ]),
         !broken.value && !printing.value && h(Summary, {
-          result: shown.value?.result ?? null, label: shown.value?.label ?? "", late: late.value,
+          result: shown.value?.own ?? null, label: shown.value?.label ?? "", late: late.value,
           invalid: late.value && errors.value,
         }),
         !broken.value && (shown.value || printing.value) && h(Toolbar, {

@@ -2,6 +2,7 @@
 // from plain data, and says what the pointer is on. Used by the studio and by files that stand alone.
 
 import { THREE } from "/libraries/three.js";
+import { boxOf } from "../document/surfaces.js";
 import { createAnnotations } from "./annotations.js";
 import { createBody } from "./body.js";
 import { createCamera } from "./camera.js";
@@ -10,6 +11,7 @@ import { pick } from "./picking.js";
 import { createPrint } from "./print.js";
 import { createPrints } from "./prints.js";
 import { createStage } from "./stage.js";
+import { createSurfaces } from "./surfaces.js";
 import { readTheme, watchTheme } from "./theme.js";
 import { boundsOf, cornersOf, LAST } from "./topology.js";
 
@@ -21,6 +23,7 @@ const CLICK = 5; // px that a press may move and still be no drag
 const GROWN = 1.7; // a result this much larger or smaller than the fitted one is fitted anew
 const FITTED = [0, 4, 8, 11]; // frames that are brought into view
 const ROOM = { narrow: 1.28, wide: 1.45 }; // around the shape; wide where dimensions stand beside it
+const FAR = 4; // times the shape's size, up to which a surface is brought into view with it
 const TURN = Math.PI / 24; // of an arrow key
 const ZOOM = 1.15; // of + and -
 
@@ -65,10 +68,11 @@ export function createViewer(container, { events = {}, still = () => false } = {
   const ground = createGround();
   const print = createPrint();
   const prints = createPrints();
+  const surfaces = createSurfaces();
   const annotations = createAnnotations(container);
-  const parts = [body, ghost, other, ground, print, prints];
+  const parts = [body, ghost, other, ground, print, prints, surfaces];
   ghost.group.renderOrder = 3;
-  stage.scene.add(ground.group, body.group, ghost.group, other.group, print.group, prints.group);
+  stage.scene.add(ground.group, body.group, ghost.group, other.group, print.group, prints.group, surfaces.group);
   /** Show what is to be seen now: the print, or the shape with what belongs to it. */
   const arrange = () => {
     const shape = Boolean(body.shown) && !printing;
@@ -77,6 +81,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
     ghost.group.visible = shape && shows.ghost && frame > UNMOVED;
     other.group.visible = shape && Boolean(overlaid);
     prints.group.visible = shape && Boolean(spread) && frame === LAST; // prints are known in the last frame only
+    surfaces.group.visible = !printing;
     print.group.visible = printing;
     stage.invalidate();
   };
@@ -165,6 +170,14 @@ export function createViewer(container, { events = {}, still = () => false } = {
     return ratio > GROWN || ratio < 1 / GROWN || away > 0.5 * sizeOf(fitted);
   };
 
+  /** Return points that are to be seen: those of the shape, and of surfaces that are not much larger. */
+  const seen = () => {
+    if (!body.shown) return [];
+    const size = FAR * sizeOf(boundsOf(body.shown.result));
+    const near = surfaces.shown.filter(({ vertices }) => sizeOf(boxOf(vertices)) < size);
+    return [...cornersOf(body.shown.result, FITTED), ...near.flatMap(({ vertices }) => vertices)];
+  };
+
   const viewer = {
     stage, camera, body, project,
     /** Hold the view still for a drag; return rayAt(x, y), which stays that of the view as it is now. */
@@ -230,6 +243,13 @@ export function createViewer(container, { events = {}, still = () => false } = {
       other.show(overlaid, body.shown?.grid ?? null);
       arrange();
     },
+    /** Show surfaces that the grid is to lie on; a new one is brought into view. */
+    setSurfaces(list) {
+      const fresh = list.some((one) => !surfaces.shown.some(({ vertices }) => vertices === one.vertices));
+      surfaces.show(list);
+      arrange();
+      if (fresh && !held) viewer.fit({ animate: false });
+    },
     /** Draw prints of the shown design (T, B, 3, 3) around its last frame; null for none. */
     setPrints(centres) {
       spread = centres;
@@ -264,7 +284,7 @@ export function createViewer(container, { events = {}, still = () => false } = {
       stage.invalidate();
     },
     fit(options = {}) {
-      const points = printing ? print.points() : body.shown ? cornersOf(body.shown.result, FITTED) : [];
+      const points = printing ? print.points() : seen();
       if (points.length && stage.size.width) {
         fresh = false;
         if (!printing) fitted = boundsOf(body.shown.result);

@@ -205,8 +205,8 @@ export const common = {
     pasted: "pasted.json",
     pastedDrawing: "pasted.svg",
     opening: "Reading {file}…",
-    dropHere: "Drop a design, or a drawing of another program",
-    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ or JSON",
+    dropHere: "Drop a design, a drawing, or a surface to lie on",
+    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ or JSON; STL, PLY or GLB",
     unknownTitle: "No design at this address",
     unknownText:
       "The server does not know the design of this address, and this browser has no copy. Here is an "
@@ -471,8 +471,8 @@ export const common = {
     pasted: "eingefuegt.json",
     pastedDrawing: "eingefuegt.svg",
     opening: "{file} wird gelesen …",
-    dropHere: "Einen Entwurf oder die Zeichnung eines anderen Programms ablegen",
-    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ oder JSON",
+    dropHere: "Einen Entwurf, eine Zeichnung oder eine Zielfläche ablegen",
+    dropKinds: "DXF, SVG, Rhino (.3dm), CSV, OBJ oder JSON; STL, PLY oder GLB",
     unknownTitle: "Kein Entwurf an dieser Adresse",
     unknownText:
       "Der Server kennt den Entwurf dieser Adresse nicht, und dieser Browser hat keine Kopie. Hier ist "

@@ -10,9 +10,10 @@ import { plan } from "./plan.js";
 import { print } from "./print.js";
 import { repairs } from "./repairs.js";
 import { shape } from "./shape.js";
+import { surface } from "./surface.js";
 
 export const LANGUAGES = { en: "English", de: "Deutsch" };
-const PARTS = { common, drawing, material, panels, plan, print, repairs, shape };
+const PARTS = { common, drawing, material, panels, plan, print, repairs, shape, surface };
 
 /** Return the string of a key such as "plan.draw", with {name} replaced by values.name. */
 export function t(key, values = {}) {

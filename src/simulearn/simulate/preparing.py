@@ -1,0 +1,96 @@
+"""The first time on a machine: kernels of the learned engine, compiled by two processes.
+
+The compiler works on one kernel at a time in a process. So another process compiles those of
+networks and collisions while this one compiles those of mechanics; each keeps them on disk, where
+the other finds them.
+"""
+
+import os
+import subprocess
+import sys
+from contextlib import suppress
+from functools import cache
+from multiprocessing import parent_process
+from pathlib import Path
+
+from simulearn.collisions import find_all
+from simulearn.files import cores
+from simulearn.grid import make
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.model import Designs, Model
+from simulearn.learn.equilibrium.model import Equilibrium
+from simulearn.learn.equilibrium.native import predict, unsolved
+from simulearn.native import is_kept
+from simulearn.simulate.designs import designs_of
+
+LONGEST = 300.0  # s, after which the other process is not waited for
+
+
+def prepare(model: Model) -> None:
+    """Compile all kernels of a model's predictions that are not kept on disk."""
+    if isinstance(model, Equilibrium):  # others have their own
+        _prepare()
+
+
+@cache
+def _prepare() -> None:
+    from simulearn.collisions.kernels.pairs import find_pairs  # loads the compiler
+    from simulearn.learn.equilibrium.kernels.network import outputs
+    from simulearn.mechanics.kernels.path import follow
+
+    if all(map(is_kept, (find_pairs, outputs, follow))):
+        return
+    other = _begun()
+    try:
+        _model().rollout(_small())
+    finally:
+        if other is not None:
+            _ended(other)
+
+
+def rest() -> None:
+    """Compile all kernels but those that find equilibria."""
+    designs = _small()
+    frames = predict(_model().parameters, designs, solve=unsolved)
+    find_all(frames.joints, frames.sections, designs.beams, designs.actuators)
+
+
+def _model() -> Equilibrium:
+    model = bundle_of("default").model
+    assert isinstance(model, Equilibrium)
+    return model
+
+
+def _small() -> Designs:
+    return designs_of([make("flat", (1, 1), 50.0)], _model().material)
+
+
+def _begun() -> "subprocess.Popen[bytes] | None":
+    """Return the other process, None where it would not help or cannot be started."""
+    interpreter = Path(sys.executable or "")
+    # Programs that hold an interpreter name themselves; workers are as many as there are cores.
+    if cores() < 2 or not interpreter.stem.startswith("python") or parent_process() is not None:
+        return None
+    command = [str(interpreter), "-c", f"from {__name__} import rest; rest()"]
+    path = os.pathsep.join(filter(None, sys.path))
+    quiet = subprocess.DEVNULL
+    with suppress(OSError, ValueError):
+        return subprocess.Popen(
+            command,
+            env={**os.environ, "PYTHONPATH": path},
+            stdin=quiet,
+            stdout=quiet,
+            stderr=quiet,
+            creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+        )
+    return None
+
+
+def _ended(other: "subprocess.Popen[bytes]") -> None:
+    """Wait for the other process; what it did not come to is compiled where it is needed."""
+    try:
+        other.wait(LONGEST)
+    except BaseException:
+        other.kill()
+        other.wait()
+        raise
