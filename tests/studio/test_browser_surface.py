@@ -148,13 +148,17 @@ def test_other_goals_of_a_task_are_listed_and_removed_on_a_phone_in_german(page,
     page.goto(studio.url)
     expect(page.get_by_role("slider", name="Von flach bis verformt")).to_be_enabled(timeout=SLOW)
     wanted = [
-        {"vertices": "joints", "surface": {"heights": "10", "x": [-90, 90], "y": [-90, 90]}},
+        {
+            "vertices": "joints",
+            "surface": {"heights": "10", "x": [-90, 90], "y": [-90, 90], "step": 20},
+        },
         {"face": ["joint", 8, "top"], "direction": [0.5, 0, 1]},
         {"vertices": [["joint", 0, "centre"], ["joint", 8, "centre"]], "distance": 150},
         {"away_from": "itself", "clearance": 1},
     ]
     task = {"schema": "simulearn.task/1", "grid": grid_to_dict(make("saddle")), "goals": wanted}
     drop(page, "haube.json", json.dumps(task).encode())
+    page.locator(".notice").get_by_role("button", name="Schließen").click()
     page.get_by_role("tab", name="Ziele").click()
     panel = page.get_by_role("tabpanel", name="Ziele")
     items = panel.locator(".goal")
