@@ -93,14 +93,16 @@ test("several answers have what is needed to choose one; a single one is no choi
     grid, error_mm: 0.4, error_fea_mm: 0.5, actuators: 3, actuator_mm: 90, print_seconds: 3000, on_front: true,
     probability: { together: 0.7 },
   };
-  const other = { ...one, error_fea_mm: null, print_seconds: null, on_front: false, probability: undefined };
+  const other = { ...one, error_fea_mm: null, print_seconds: null, on_front: false, probability: undefined, collisions: [{}] };
   const shape = {};
   const [first, second] = answersOf(grid, { answers: [one, other] }, shape);
   assert.deepEqual(first, {
-    grid, error: 0.5, byFea: true, actuators: 3, length: 90, seconds: 3000, within: 0.7, beaten: false, result: shape,
+    grid, error: 0.5, byFea: true, actuators: 3, length: 90, seconds: 3000, within: 0.7, beaten: false,
+    collides: false, result: shape,
   });
   assert.deepEqual(second, {
-    grid, error: 0.4, byFea: false, actuators: 3, length: 90, seconds: null, within: null, beaten: true, result: null,
+    grid, error: 0.4, byFea: false, actuators: 3, length: 90, seconds: null, within: null, beaten: true,
+    collides: true, result: null,
   });
   assert.deepEqual(answersOf(grid, { answers: [one] }, shape), []);
   assert.deepEqual(answersOf(grid, {}, shape), []);

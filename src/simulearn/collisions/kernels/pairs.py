@@ -174,6 +174,7 @@ def search(
     joints: Array, bends: Any, skip: Array, least: float, pieces: Any, row: Array,
 ) -> None:  # fmt: skip
     """Look for a collision between frames f and f + 1, in both of which a pair is free."""
+    slot = len(pieces.counts) - 2  # a number in the source would be a type of its own to Numba
     stack = np.empty((HALVINGS + 2, 4))
     place = np.empty(3)
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = 0.0, before, 1.0, after
@@ -185,9 +186,9 @@ def search(
         if (g0 + g1 - distance) / 2 > -least or distance < FINE or t1 - t0 < 1.5 / 2**HALVINGS:
             continue
         t = (t0 + t1) / 2
-        set_body(a, sections, joints, bends, f, f + 1, t, pieces, 4)
-        set_body(b, sections, joints, bends, f, f + 1, t, pieces, 5)
-        value = gap(pieces, 4, 5, skip, place)
+        set_body(a, sections, joints, bends, f, f + 1, t, pieces, slot)
+        set_body(b, sections, joints, bends, f, f + 1, t, pieces, slot + 1)
+        value = gap(pieces, slot, slot + 1, skip, place)
         if value < -least:
             keep(row, f, t, f + 1, -value, place)
         stack[top + 1, 0], stack[top + 1, 1] = t0, g0
@@ -230,15 +231,14 @@ def set_close(
     """
     frames = len(close)
     joint = joined[0]
-    somewhere = False
-    apart = joint >= 0 and free(a, b, joined, hulls, joints, 0, least, normals[0])
-    for f in range(max(frames - 1, 1)):
-        g = min(f + 1, frames - 1)
-        parted = False
+    somewhere = was = apart = False
+    for g in range(frames):
         if joint >= 0:
-            before, after = normals[f % 2], normals[(f + 1) % 2]
-            was, apart = apart, free(a, b, joined, hulls, joints, g, least, after)
-            parted = was and apart and dot(before, after) > STILL
+            was, apart = apart, free(a, b, joined, hulls, joints, g, least, normals[g % 2])
+        if g == 0 and frames > 1:
+            continue
+        f = max(g - 1, 0)
+        parted = apart and (frames == 1 or (was and dot(normals[0], normals[1]) > STILL))
         close[f] = not parted and meet_between(boxes[a], boxes[b], f, g)
         somewhere = somewhere or close[f]
     return somewhere

@@ -32,7 +32,8 @@ function row(one, k) {
           !one.byFea && ` ${t("panels.answerByModel")}`,
         ]),
         h("span", { class: "suggestion-facts numbers" }, takes(one)),
-        one.beaten && h("span", { class: "suggestion-facts" }, t("panels.answerBeaten")),
+        one.collides && h("span", { class: "suggestion-facts" }, t("panels.answerCollides")),
+        one.beaten && !one.collides && h("span", { class: "suggestion-facts" }, t("panels.answerBeaten")),
       ]),
     ]),
   ]);

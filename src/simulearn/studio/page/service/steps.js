@@ -69,7 +69,8 @@ export function bestOf(grid, all) {
 /** Return the several designs that a search answers with, to be shown and taken; [] of a single one.
  *
  * Each is {grid, error, byFea, actuators, length: mm, seconds: to print or null, within: share of prints
- * or null, beaten: whether another is as good in everything, result: its shape once it is known}.
+ * or null, beaten: whether another is as good in everything, collides: whether parts of it run through each
+ * other, result: its shape once it is known}.
  */
 export function answersOf(grid, best, shape) {
   const answers = best.answers ?? [];
@@ -77,7 +78,8 @@ export function answersOf(grid, best, shape) {
   return answers.map((one, k) => ({
     grid: placedLike(grid, one.grid), error: one.error_fea_mm ?? one.error_mm, byFea: one.error_fea_mm !== null,
     actuators: one.actuators, length: one.actuator_mm, seconds: one.print_seconds,
-    within: one.probability?.together ?? null, beaten: !one.on_front, result: k === 0 ? shape : null,
+    within: one.probability?.together ?? null, beaten: !one.on_front,
+    collides: (one.collisions ?? []).length > 0, result: k === 0 ? shape : null,
   }));
 }
 

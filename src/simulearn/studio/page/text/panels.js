@@ -117,6 +117,7 @@ export const panels = {
     answerPrint: "printed in {time}",
     answerWithin: "{percent} of prints within tolerance",
     answerBeaten: "Another is as good or better in all of this.",
+    answerCollides: "Parts of it run through each other.",
 
     // Connection
     undo: "Undo",
@@ -293,6 +294,7 @@ export const panels = {
     answerPrint: "gedruckt in {time}",
     answerWithin: "{percent} der Drucke innerhalb der Toleranz",
     answerBeaten: "Eine andere ist in allem davon ebenso gut oder besser.",
+    answerCollides: "Teile davon gehen durcheinander hindurch.",
 
     undo: "Rückgängig",
     lost: "Der Server antwortet nicht. Er wird weiter gefragt.",
