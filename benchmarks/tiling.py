@@ -86,9 +86,9 @@ def main() -> None:
         f"files for `{PRINTER}` and all pictures included. Every design is checked by finite "
         "elements on the fine mesh, and all figures are by them: error is the distance of joints "
         "from their targets, deviation the distance from the surface, gap the distance between "
-        "two neighbours' versions of a shared joint. User seconds are of all processes together; "
-        "wall-clock seconds are of a machine that others used, too: its load over five minutes is "
-        "given."
+        "the places on a border where two neighbours meet. User seconds are of all processes "
+        "together; wall-clock seconds are of a machine that others used, too: its load over five "
+        "minutes is given."
     )
     report.table(
         [
