@@ -6,6 +6,7 @@ import sys
 import numpy as np
 import pytest
 
+from simulearn.learn.equilibrium.native import predict, unsolved
 from simulearn.native import is_kept
 from simulearn.simulate import engine, preparing
 
@@ -25,7 +26,7 @@ def model(monkeypatch):
     own = Model()
     monkeypatch.setattr(preparing, "_model", lambda: own)
     monkeypatch.setattr(preparing, "_small", lambda: [0])
-    monkeypatch.setattr(preparing, "is_kept", lambda kernel: False)
+    monkeypatch.setattr(preparing, "_all_kept", lambda: False)
     preparing._prepare.cache_clear()
     yield own
     preparing._prepare.cache_clear()
@@ -37,7 +38,7 @@ def test_other_models_need_no_kernels(model):
 
 
 def test_nothing_is_begun_where_all_is_kept(model, monkeypatch):
-    monkeypatch.setattr(preparing, "is_kept", lambda kernel: True)
+    monkeypatch.setattr(preparing, "_all_kept", lambda: True)
     monkeypatch.setattr(preparing, "_begun", lambda: pytest.fail("begun"))
     preparing._prepare()
     assert model.rollouts == 0
@@ -96,7 +97,7 @@ def test_no_other_program_is_started_in_place_of_python(monkeypatch):
 def test_the_rest_needs_no_equilibrium():
     preparing.rest()
     small = preparing._small()
-    frames = preparing.predict(preparing._model().parameters, small, solve=preparing.unsolved)
+    frames = predict(preparing._model().parameters, small, solve=unsolved)
     assert np.ptp(frames.joints[0, ..., 2], axis=(1, 2)).max() < 4.5  # flat in all frames
 
 

@@ -12,33 +12,34 @@ from contextlib import suppress
 from functools import cache
 from multiprocessing import parent_process
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from simulearn.collisions import find_all
 from simulearn.files import cores
 from simulearn.grid import make
 from simulearn.learn.common.bundle import bundle_of
 from simulearn.learn.common.model import Designs, Model
-from simulearn.learn.equilibrium.model import Equilibrium
-from simulearn.learn.equilibrium.native import predict, unsolved
-from simulearn.native import is_kept
 from simulearn.simulate.designs import designs_of
+
+# What loads the compiler is imported where it is used: quick commands do without.
+
+if TYPE_CHECKING:
+    from simulearn.learn.equilibrium.model import Equilibrium
 
 LONGEST = 300.0  # s, after which the other process is not waited for
 
 
 def prepare(model: Model) -> None:
     """Compile all kernels of a model's predictions that are not kept on disk."""
+    from simulearn.learn.equilibrium.model import Equilibrium
+
     if isinstance(model, Equilibrium):  # others have their own
         _prepare()
 
 
 @cache
 def _prepare() -> None:
-    from simulearn.collisions.kernels.pairs import find_pairs  # loads the compiler
-    from simulearn.learn.equilibrium.kernels.network import outputs
-    from simulearn.mechanics.kernels.path import follow
-
-    if all(map(is_kept, (find_pairs, outputs, follow))):
+    if _all_kept():
         return
     other = _begun()
     try:
@@ -48,14 +49,27 @@ def _prepare() -> None:
             _ended(other)
 
 
+def _all_kept() -> bool:
+    from simulearn.collisions.kernels.pairs import find_pairs
+    from simulearn.learn.equilibrium.kernels.network import outputs
+    from simulearn.mechanics.kernels.path import follow
+    from simulearn.native import is_kept
+
+    return all(map(is_kept, (find_pairs, outputs, follow)))
+
+
 def rest() -> None:
     """Compile all kernels but those that find equilibria."""
+    from simulearn.learn.equilibrium.native import predict, unsolved
+
     designs = _small()
     frames = predict(_model().parameters, designs, solve=unsolved)
     find_all(frames.joints, frames.sections, designs.beams, designs.actuators)
 
 
-def _model() -> Equilibrium:
+def _model() -> "Equilibrium":
+    from simulearn.learn.equilibrium.model import Equilibrium
+
     model = bundle_of("default").model
     assert isinstance(model, Equilibrium)
     return model
