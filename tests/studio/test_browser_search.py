@@ -56,9 +56,9 @@ def test_a_search_tells_its_error_is_stopped_and_stepped_through(aimed, page):
     search(aimed, 300)
     before = do.document(page)
     expect(aimed.get_by_text("designs tried")).to_be_visible()
-    passed = aimed.locator(".search-facts")
-    first = passed.inner_text()
-    expect(passed).not_to_have_text(first)
+    # After so many designs there are steps to go through, however busy the machine is.
+    many = re.compile(r"\d{3}\s*designs tried")
+    expect(aimed.locator(".search-facts")).to_contain_text(many, timeout=SLOW)
     do.button(aimed, "Stop, keep the best").click()
     found = aimed.get_by_role("group", name="Found")
     expect(found).to_be_visible(timeout=SLOW)
