@@ -23,7 +23,7 @@ from report import Report
 from simulearn.grid import Rules, draw_valid, grid_to_dict, make
 from simulearn.inverse import optimize, task_from_dict
 from simulearn.simulate import engine
-from simulearn.surfaces import Surface, surface_of_heights
+from simulearn.surfaces import Surface
 
 SEED = 712  # no data set is drawn from it
 LENGTH = 60.0  # mm, of the beams to begin with
@@ -96,8 +96,11 @@ def waves(triangles: int) -> Surface:
     """Return a wavy surface of about so many triangles."""
     side = round((triangles / 2) ** 0.5) + 1
     x, y = np.meshgrid(np.linspace(-100, 100, side), np.linspace(-100, 100, side))
-    table = 20 * np.sin(x / 30) * np.cos(y / 25)
-    return surface_of_heights(table, (-100, 100), (-100, 100))
+    z = 20 * np.sin(x / 30) * np.cos(y / 25)
+    k = np.arange(side * side).reshape(side, side)
+    a, b, c, d = (part.ravel() for part in (k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]))
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return Surface(np.stack([x, y, z], axis=-1).reshape(-1, 3), faces)
 
 
 def near(surface: Surface, away: float) -> np.ndarray:
