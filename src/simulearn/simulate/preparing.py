@@ -44,9 +44,13 @@ def _prepare() -> None:
     other = _begun()
     try:
         _model().rollout(_small())
+        if other is not None:
+            with suppress(subprocess.TimeoutExpired):  # the rest is compiled where it is needed
+                other.wait(LONGEST)
     finally:
         if other is not None:
-            _ended(other)
+            other.kill()
+            other.wait()
 
 
 def _all_kept() -> bool:
@@ -98,13 +102,3 @@ def _begun() -> "subprocess.Popen[bytes] | None":
             creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
         )
     return None
-
-
-def _ended(other: "subprocess.Popen[bytes]") -> None:
-    """Wait for the other process; what it did not come to is compiled where it is needed."""
-    try:
-        other.wait(LONGEST)
-    except BaseException:
-        other.kill()
-        other.wait()
-        raise

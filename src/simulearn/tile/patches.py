@@ -33,6 +33,7 @@ class Tiling:
         inset: (M, K, 3) mm, from the points to where each module has its own joints; see
             `inset.with_inset`.
         tilt: (M, K, 3) difference of the normals there.
+        drawn: whether the user drew the modules, as quads.
     """
 
     points: Array
@@ -44,6 +45,7 @@ class Tiling:
     warnings: tuple[Message, ...] = ()
     inset: Array | float = 0.0
     tilt: Array | float = 0.0
+    drawn: bool = False
 
     @cached_property
     def lattice(self) -> Grid:

@@ -61,6 +61,7 @@ def from_quads(vertices: Array, quads: Indices, cells: Cells = (2, 2)) -> Tiling
         tuple(f"q{k + 1}" for k in range(len(quads))),
         joints.surface(),
         tuple(warnings),
+        drawn=True,
     )
 
 

@@ -247,7 +247,7 @@ def _fitting(tiling: Tiling, training: TrainingRange) -> None:
     else:
         factor = np.sqrt(least / short * most / long)
         size = factor * float(lengths.mean()) * float(np.mean(tiling.cells))
-        drawn = tiling.names[0].startswith("q")
-        option = "draw quads of that size, or give --cells" if drawn else f"--size {size:.0f}"
+        other = f"--size {size:.0f}"
+        option = "draw quads of that size, or give --cells" if tiling.drawn else other
         text += f". Modules of about {size:.0f} mm are right here: {option}"
     raise InputError(text, "module-size", name)
