@@ -88,7 +88,7 @@ def honeycomb(uniform: Uniform) -> Net:
     """Return one to four hexagons that share sides."""
     count = _among(uniform, 1, 4)
     places = [(0.0, 0.0), (sqrt(3), 0.0), (sqrt(3) / 2, 1.5), (-sqrt(3) / 2, 1.5)][:count]
-    return _cells_of(places, 6, pi / 6, 1.0)
+    return _merged_rings([_ring(6, pi / 6) + np.array(place) for place in places])
 
 
 def brick(uniform: Uniform) -> Net:
@@ -127,16 +127,54 @@ def kagome(uniform: Uniform) -> Net:
     return _merged(np.array(segments))
 
 
-def _cells_of(places: list[tuple[float, float]], sides: int, turn: float, radius: float) -> Net:
-    """Return regular polygons around places, those that share sides sharing their beams."""
+def wheel(uniform: Uniform) -> Net:
+    """Return a hub with three or four spokes to a rim of triangles."""
+    spokes = _among(uniform, 3, 4)
+    angle = 2 * pi * np.arange(spokes) / spokes
+    rim = np.stack([np.cos(angle), np.sin(angle)], -1)
+    around = [(1 + k, 1 + (k + 1) % spokes) for k in range(spokes)]
+    return Net(np.vstack([np.zeros(2), rim]), [(0, 1 + k) for k in range(spokes)] + around)
+
+
+def octagon(uniform: Uniform) -> Net:
+    """Return an octagon with one to four squares on every other side."""
+    places, reach = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)], 1 + sqrt(0.5)
+    rings = [_ring(8, pi / 8)]
+    for x, y in places[: _among(uniform, 1, 4)]:
+        rings.append(_ring(4, pi / 4) + np.array([x, y]) * reach)
+    return _merged_rings(rings)
+
+
+def diamonds(uniform: Uniform) -> Net:
+    """Return a row of two to four diamonds that meet at their corners."""
+    half = pi / 6 + uniform() * pi / 12
+    across, up = cos(half), sin(half)
+    diamond = np.array([[-across, 0.0], [0.0, -up], [across, 0.0], [0.0, up]])
+    step = np.array([2 * across, 0.0])
+    return _merged_rings([diamond + k * step for k in range(_among(uniform, 2, 4))])
+
+
+def pinwheel(uniform: Uniform) -> Net:
+    """Return a square with one to four cells around it, each passing it by half its length."""
+    cell = np.array([[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [0, 1]]) - np.array([0.5, 1.5])
+    turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+    rings = [_ring(4, pi / 4)]
+    for _ in range(_among(uniform, 1, 4)):
+        rings.append(cell)
+        cell = cell @ turn.T
+    return _merged_rings(rings)
+
+
+def _ring(sides: int, turn: float) -> NDArray[np.float64]:
+    """Return the corners (sides, 2) of a regular polygon with sides of length one."""
     angle = turn + 2 * pi * np.arange(sides) / sides
-    ring = radius * np.stack([np.cos(angle), np.sin(angle)], -1)
-    segments = [
-        (ring[k] + place, ring[(k + 1) % sides] + place)
-        for place in np.array(places)
-        for k in range(sides)
-    ]
-    return _merged(np.array(segments))
+    return np.stack([np.cos(angle), np.sin(angle)], -1) / (2 * sin(pi / sides))
+
+
+def _merged_rings(rings: list[NDArray[np.float64]]) -> Net:
+    """Return the net of closed rings of corners; beams that two of them share are one."""
+    pairs = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
+    return _merged(np.concatenate(pairs))
 
 
 def _merged(segments: NDArray[np.float64]) -> Net:
@@ -192,4 +230,8 @@ NETS: dict[str, Callable[[Uniform], Net]] = {
     "brick": brick,
     "truss": truss,
     "kagome": kagome,
+    "wheel": wheel,
+    "octagon": octagon,
+    "diamonds": diamonds,
+    "pinwheel": pinwheel,
 }
