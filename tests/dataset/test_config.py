@@ -9,7 +9,7 @@ from simulearn.grid import Rules, validate
 
 def test_the_shipped_ones_are_what_they_say():
     lattices = ["2x3", "3x3", "beams-removed", "calibration", "default", "sample"]
-    families = ["family", "family-fine", "family-kept-out", "family-test"]
+    families = ["family", "family-bound", "family-fine", "family-kept-out", "family-test"]
     assert shipped() == sorted([*lattices, *families])
     default = read_config("default")
     assert default.trials == 2000
@@ -32,6 +32,8 @@ def test_families_have_kinds_and_members_and_some_kinds_are_kept_out():
     assert set(test.kinds.shares) == set(learnt.kinds.shares)
     assert not set(kept.kinds.shares) & set(learnt.kinds.shares)
     assert len(kept.kinds.shares) == 3
+    bound = set(read_config("family-bound").kinds.shares)
+    assert not bound & (set(kept.kinds.shares) | set(learnt.kinds.shares))
     designs = [test.design(k) for k in range(20)]
     assert len({design.material.physics for design in designs}) > 12
     assert len({design.kind for design in designs}) > 4

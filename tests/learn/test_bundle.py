@@ -8,7 +8,8 @@ from safetensors.numpy import load_file, save_file
 
 from simulearn.errors import InputError
 from simulearn.learn.common import bundle as bundles
-from simulearn.learn.common.bundle import add_metrics, bundle_of, save_bundle
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.saving import add_metrics, save_bundle
 
 
 @pytest.fixture

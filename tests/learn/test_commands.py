@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 
 from simulearn.cli.program import app
 from simulearn.grid import make, write_grid
-from simulearn.learn.common.bundle import bundle_of, save_bundle
+from simulearn.learn.common.bundle import bundle_of
+from simulearn.learn.common.saving import save_bundle
 from simulearn.learn.paper import search
 from simulearn.material import load_material
 from simulearn.material.material import HERE

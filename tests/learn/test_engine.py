@@ -7,9 +7,9 @@ import pytest
 
 from simulearn.errors import ComputationError, InputError
 from simulearn.grid import Rules, draw_valid, make
-from simulearn.learn.common.bundle import save_bundle
 from simulearn.learn.common.first_frame import first_frame
 from simulearn.learn.common.model import Designs
+from simulearn.learn.common.saving import save_bundle
 from simulearn.simulate import Result, engine, one, read_npz, write_npz
 from simulearn.simulate.learned import Learned
 

@@ -21,6 +21,7 @@ from simulearn.material import Material, read_material
 if TYPE_CHECKING:
     from simulearn.learn.common.bundle import Bundle
     from simulearn.learn.common.evaluate import Evaluation
+    from simulearn.learn.equilibrium.config import EquilibriumConfig
 
 
 @app.command()
@@ -42,6 +43,13 @@ def train(
             min=1, metavar="RUNS", help="Search noise, penalty and data size in so many short runs."
         ),
     ] = None,
+    bound_of: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MODEL",
+            help="Fit no more than the error estimate of a model anew, to the calibration sets.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Train a model; the same command goes on where it was stopped."""
@@ -51,7 +59,15 @@ def train(
     from simulearn.learn.equilibrium.config import EquilibriumConfig
 
     wanted = read_config(config)
-    folder = output or Path("runs") / (wanted.name + ("-search" if search else ""))
+    suffix = "-search" if search else "-bound" if bound_of else ""
+    folder = output or Path("runs") / (wanted.name + suffix)
+    if bound_of is not None:
+        if search or data or not isinstance(wanted, EquilibriumConfig):
+            raise InputError(
+                "--bound-of is for the kinds equilibrium and beams, without --search and --data"
+            )
+        _fit_bound(bound_of, wanted, folder, as_json)
+        return
     source = data or Path(wanted.data)
     if not source.is_file():
         raise InputError(
@@ -101,6 +117,20 @@ def train(
     out.print(f"wrote {escape(str(bundle.path))} and {escape(str(folder))}/loss.png, loss.csv")
 
 
+def _fit_bound(model: str, config: "EquilibriumConfig", folder: Path, as_json: bool) -> None:
+    """Fit the error estimate of a model anew, into FOLDER/model."""
+    from simulearn.learn.common.bundle import bundle_of
+    from simulearn.learn.run import new_bound
+
+    bundle = bundle_of(model)
+    folder_of(folder)
+    made = new_bound(bundle, config, folder)
+    if as_json:
+        print(json.dumps({"model": str(made.path)}))
+    else:
+        out.print(f"wrote {escape(str(made.path))}")
+
+
 @app.command()
 def evaluate(
     model: Annotated[
@@ -123,9 +153,10 @@ def evaluate(
 ) -> None:
     """Compare a model with the trials of a data set that are kept for testing."""
     from simulearn.dataset import read_dataset
-    from simulearn.learn.common.bundle import add_metrics, bundle_of
+    from simulearn.learn.common.bundle import bundle_of
     from simulearn.learn.common.evaluate import evaluate as evaluate_
     from simulearn.learn.common.evaluate import for_testing
+    from simulearn.learn.common.saving import add_metrics
 
     bundle = bundle_of(model)
     trained = bundle.model

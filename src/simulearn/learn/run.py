@@ -11,12 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from simulearn.dataset import Dataset, read_dataset
+from simulearn.errors import InputError
 from simulearn.files import replacing
-from simulearn.learn.common.bundle import Bundle, save_bundle
+from simulearn.learn.common.bundle import Bundle
 from simulearn.learn.common.model import Model
+from simulearn.learn.common.saving import copy_with, save_bundle
 from simulearn.learn.common.trials import split, validate
 from simulearn.learn.equilibrium import train as equilibrium
 from simulearn.learn.equilibrium.config import EquilibriumConfig
+from simulearn.learn.equilibrium.model import Equilibrium
 from simulearn.learn.equilibrium.stages import StageRow
 from simulearn.learn.paper import train as paper
 from simulearn.learn.paper.config import PaperConfig
@@ -69,6 +72,24 @@ def run(
     training = config.model_dump(mode="json")
     bundle = save_bundle(folder / "model", model, config.name, data, training, more=more)
     return bundle, every, percent
+
+
+def new_bound(bundle: Bundle, config: EquilibriumConfig, folder: Path) -> Bundle:
+    """Write a model to FOLDER/model with its error estimate fitted anew.
+
+    Args:
+        bundle: of the model.
+        config: of a run; its calibration sets are what the estimate is fitted to.
+        folder: of the run; it exists.
+
+    Raises:
+        InputError: there is nothing to fit to, or the model is of a kind without an estimate.
+    """
+    if not isinstance(bundle.model, Equilibrium):
+        raise InputError(f'{bundle.path}: models of kind "{bundle.card.kind}" have no estimate')
+    model = equilibrium.with_new_bound(bundle.model, config)
+    calibration = {"calibration": config.model_dump(mode="json")["calibration"]}
+    return copy_with(bundle, folder / "model", model, calibration)
 
 
 def write_curve(rows: Rows, folder: Path, draw: Draw | None) -> None:

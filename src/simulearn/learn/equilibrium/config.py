@@ -31,6 +31,7 @@ class EquilibriumConfig(RunConfig):
     Attributes:
         kind: of the model; "beams" has no network.
         calibration: the data set that the error estimate is fitted to, or none.
+        unfamiliar: a further one for it, of kinds of grids that the model does not learn, or none.
         more: further data sets to learn from, all by the same mesh as `data`.
         fine: a further data set to learn from, by the fine mesh, or none.
         fine_share: how many times as often its trials are drawn as others.
@@ -43,6 +44,7 @@ class EquilibriumConfig(RunConfig):
 
     kind: Literal["equilibrium", "beams"]
     calibration: str | None = None
+    unfamiliar: str | None = None
     more: tuple[str, ...] = ()
     fine: str | None = None
     fine_share: Positive = 3.0

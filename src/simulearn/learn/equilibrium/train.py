@@ -3,12 +3,11 @@
 1. The law of sections, without a network.
 2. The first shapes of all trials by that law, from which the network takes its features.
 3. The network that corrects it, its polish, and the network for stresses.
-4. The error estimate, on a data set of its own.
+4. The error estimate, on data sets of its own.
 
 FOLDER/law.safetensors, network.safetensors, polish..., stress...   checkpoints
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -19,16 +18,11 @@ import numpy as np
 
 from simulearn.compiled import double_precision
 from simulearn.dataset import Batch, Dataset, read_dataset
+from simulearn.errors import InputError
 from simulearn.learn.common.first_frame import designs_of
-from simulearn.learn.common.metrics import errors
 from simulearn.learn.common.trials import fingerprint, split
 from simulearn.learn.equilibrium import corrector
-from simulearn.learn.equilibrium.bound import (
-    ErrorBound,
-    error_bound_of,
-    seen_of,
-    signs_of_error,
-)
+from simulearn.learn.equilibrium.bound_fit import error_bound_of, ranges_of
 from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
 from simulearn.learn.equilibrium.examples import examples_of
 from simulearn.learn.equilibrium.learnt import learnt_of
@@ -38,8 +32,8 @@ from simulearn.learn.equilibrium.parameters import (
     STRESSES,
     NetworkWeights,
     Parameters,
-    Prediction,
 )
+from simulearn.learn.equilibrium.signs import seen_of
 from simulearn.learn.equilibrium.stages import (
     Keeper,
     Report,
@@ -72,16 +66,14 @@ def train(
             or the one by the fine mesh is not there.
         ComputationError: a loss is not finite.
     """
-    batches, aside = split(config, data)
+    batches, _ = split(config, data)
     more = [read_dataset(path) for path in config.more]
     batches += [batch for one in more for batch in _for_learning(one)]
     sets, fine = [data, *more], list[Batch]()
     if config.fine is not None:
         sets.append(read_dataset(config.fine))
         fine = _for_learning(sets[-1])
-    calibration: list[Batch] | None = None
-    if config.calibration is not None:  # what is wrong with it is said before all the work
-        calibration = _for_learning(read_dataset(config.calibration, stress=False))
+    calibration = _calibration(config)  # what is wrong with it is said before all the work
     material = batches[0].material
     identity = fingerprint(config, *sets)
     stages = (config.law, config.network, config.polish, config.stress)
@@ -136,48 +128,38 @@ def train(
     learnt = learnt_of(seen, max(b.mesh for b in batches))
     model = Equilibrium(as_numpy, material, learnt, sizes, None, config.kind)
     if calibration is not None:
-        model = replace(model, bound=calibrated(model, calibration, aside, batches))
+        seen_halves = [model.predict(designs_of(b), last=True).seen for b in batches]
+        bound = error_bound_of(model, *calibration, seen_of(seen_halves), ranges_of(batches))
+        model = replace(model, bound=bound)
     return model, every
+
+
+def with_new_bound(model: Equilibrium, config: EquilibriumConfig) -> Equilibrium:
+    """Return a model with its error estimate fitted anew to the calibration sets of a run.
+
+    Raises:
+        InputError: the run has none, one is not there, or the model has no estimate yet.
+    """
+    calibration = _calibration(config)
+    if calibration is None:
+        raise InputError(f'the configuration "{config.name}" has no calibration set')
+    if model.bound is None:
+        raise InputError("the model has no error estimate that could be fitted anew")
+    bound = error_bound_of(model, *calibration, model.bound.seen, model.bound.ranges)
+    return replace(model, bound=bound)
+
+
+def _calibration(config: EquilibriumConfig) -> tuple[list[Batch], list[Batch]] | None:
+    """Return the trials of kinds that are learnt, and of others, that an estimate is fitted to."""
+    if config.calibration is None:
+        return None
+    sets = (config.calibration, config.unfamiliar)
+    learnt, others = (
+        _for_learning(read_dataset(path, stress=False)) if path is not None else [] for path in sets
+    )
+    return learnt, others
 
 
 def _for_learning(data: Dataset) -> list[Batch]:
     """Return the trials of a set that are not kept for testing, by topology."""
     return [batch.take(~batch.test) for batch in data.batches if (~batch.test).any()]
-
-
-@double_precision
-def calibrated(
-    model: Equilibrium,
-    calibration: Sequence[Batch],
-    aside: Sequence[Batch],
-    learnt: Sequence[Batch],
-) -> ErrorBound:
-    """Return the error estimate of a model, by trials that it did not learn from.
-
-    Args:
-        model: without an estimate.
-        calibration: trials that count for the coverage, by the mesh whose answers are wanted.
-        aside: further trials that the model did not learn from, for the weights of signs.
-        learnt: trials that it learnt from.
-    """
-    seen = seen_of([model.predict(designs_of(b), last=True).seen for b in learnt])
-    rows: list[tuple[Any, ...]] = []
-    for k, batch in enumerate((*calibration, *aside)):
-        prediction, error, ended = _answered(model, batch)
-        signs = signs_of_error(designs_of(batch), prediction, *seen)
-        kinds = np.array(batch.kinds or _fifths(batch))
-        counted = np.full(len(batch), k < len(calibration))
-        rows.append(tuple(x[ended] for x in (signs, error, kinds, counted)))
-    every, error, kinds, counted = (np.concatenate(x) for x in zip(*rows, strict=True))
-    return error_bound_of(every, error, kinds, counted, seen, learnt)
-
-
-def _fifths(batch: Batch) -> list[str]:
-    """Return one of five names for each trial, which stand for kinds where none is known."""
-    return [f"{number % 5} of 5" for number in batch.numbers]
-
-
-def _answered(model: Equilibrium, batch: Batch) -> tuple[Prediction, Any, Any]:
-    """Return the prediction of trials, its errors in the last frame (mm), and which have one."""
-    prediction, frames = model.predict(designs_of(batch)), model.rollout(designs_of(batch))
-    return prediction, errors(frames, batch).vertex[:, -1], frames.converged
