@@ -64,6 +64,15 @@ def test_another_material_is_another_file(tmp_path: Path) -> None:
         ('kind = "marlow"', 'kind = "magic"', "magic"),
         ("hold = 600.0", "hold = 600.0\nhalf = 1", "creep.half"),
         ("[section]", "[section", "not valid TOML"),
+        ("width = 7.2\n", "", r"section\.width is missing"),
+        ("width = 7.2", 'width = "7.2 mm"', "without quotes and without a unit"),
+        ("width = 7.2", "width = true", r"section\.width is True"),
+        ("width = 7.2", "width = 720.0", r"between 0\.1 and 100 mm"),
+        ("density = 1.25e-9", "density = 1250.0", "tonne/mm3"),
+        ("active = 0.09261", "active = 9.261", r"shrinkage\.active is 9\.261; .*less than 1"),
+        ('kind = "marlow"', 'kind = "neo-hookean"', r"law\.table is not a key"),
+        ('name = "pla-hot-water"', 'name = ""', "1 to 80 characters"),
+        ('name = "pla-hot-water"', 'name = "a\\nb"', "1 to 80 characters"),
     ],
 )
 def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, message: str) -> None:
@@ -74,6 +83,7 @@ def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, message: 
         load_material(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
+    assert caught.value.code in ("material-file", "material-name")
 
 
 def test_an_unknown_material_names_the_known_ones() -> None:
