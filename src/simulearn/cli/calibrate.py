@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.markup import escape
 from rich.table import Table
 
 from simulearn import outputs
@@ -166,7 +167,11 @@ def _strips(found: "Fit") -> Table:
         values = (one.measured, one.before, one.simulated)
         words = [f"{value:.2f}" for value in values]
         table.add_row(
-            one.strip, one.key, str(one.count), *words, f"{one.difference:+.2f} ± {one.sd:.2f}"
+            escape(one.strip),
+            one.key,
+            str(one.count),
+            *words,
+            f"{one.difference:+.2f} ± {one.sd:.2f}",
         )
     return table
 

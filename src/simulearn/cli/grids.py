@@ -8,7 +8,16 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn.cli.base import GridArgument, Json, app, grid_of, grouped, out, validated
+from simulearn.cli.base import (
+    GridArgument,
+    Json,
+    MaterialOption,
+    app,
+    grid_of,
+    grouped,
+    out,
+    validated,
+)
 from simulearn.errors import InputError
 from simulearn.grid import (
     Grid,
@@ -29,10 +38,15 @@ ModelOption = Annotated[
 
 
 @app.command("validate")
-def validate_(grid: GridArgument, model: ModelOption = None, as_json: Json = False) -> None:
+def validate_(
+    grid: GridArgument,
+    model: ModelOption = None,
+    material: MaterialOption = None,
+    as_json: Json = False,
+) -> None:
     """Check a grid: errors keep it from being simulated, warnings do not."""
     try:
-        report = validation_of(grid_of(grid), model)
+        report = validation_of(grid_of(grid, material), model)
     except InputError as error:
         if as_json:  # machines get the same form, whatever is wrong
             print(json.dumps(Validation((Message("input", "grid", str(error)),), ()).to_dict()))
