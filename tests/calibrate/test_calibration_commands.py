@@ -67,6 +67,13 @@ def test_fit_writes_a_material(run, tmp_path, form):
     write_form(read_form(form).model_copy(update={"material": str(target)}), form)
     code, _, err = run("calibrate", "fit", form, "-o", again)
     assert code == 0, err
+    # What is read is not written over, and the names of materials that come along are theirs.
+    text = target.read_text()
+    assert "is what is read" in run("calibrate", "fit", form, "-o", target)[2]
+    assert target.read_text() == text
+    other = tmp_path / "pla-hot-water.toml"
+    assert "another name" in run("calibrate", "fit", form, "-o", other)[2]
+    assert not other.exists()
     assert again.read_text().count("scale =") == 1
 
 
@@ -89,3 +96,7 @@ def test_wrong_files(run, tmp_path, form):
     code, _, err = run("calibrate", "fit", form)
     assert code == 1
     assert "strip top, foo" in err
+    form.write_text(text.replace("[strips.top]", '[strips."[/x] top"]'))
+    code, out, err = run("calibrate", "fit", form)
+    assert code == 0, err
+    assert "[/x] top" in out

@@ -71,8 +71,8 @@ def test_another_material_is_another_file(tmp_path: Path) -> None:
         ("density = 1.25e-9", "density = 1250.0", "tonne/mm3"),
         ("active = 0.09261", "active = 9.261", r"shrinkage\.active is 9\.261; .*less than 1"),
         ('kind = "marlow"', 'kind = "neo-hookean"', r"law\.table is not a key"),
-        ('name = "pla-hot-water"', 'name = ""', "1 to 80 characters"),
-        ('name = "pla-hot-water"', 'name = "a\\nb"', "1 to 80 characters"),
+        ('name = "pla-hot-water"', 'name = ""', "a name has 1 to 80"),
+        ('name = "pla-hot-water"', 'name = "a\\nb"', "a name has 1 to 80"),
     ],
 )
 def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, message: str) -> None:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.errors import InputError
 from simulearn.material import Family, Material
 from simulearn.material.family import member_of
 
@@ -103,7 +104,15 @@ def material_with(base: Material, values: Numbers) -> Material:
 
 
 def with_section(base: Material, width: float | None, thickness: float | None) -> Material:
-    """Return the base material with the section that was measured, mm; None keeps the base's."""
+    """Return the base material with the section that was measured, mm; None keeps the base's.
+
+    Raises:
+        InputError: the shells are too wide for it.
+    """
     values = {"width": width, "thickness": thickness}
     update = {key: value for key, value in values.items() if value is not None}
-    return base.model_copy(update={"section": base.section.model_copy(update=update)})
+    section = base.section.model_copy(update=update)
+    if 2 * section.shell >= section.width:
+        text = f"section.width is {width:g} mm; two shells of {section.shell:g} mm leave no core"
+        raise InputError(text, "calibration-value", "section.width")
+    return base.model_copy(update={"section": section})

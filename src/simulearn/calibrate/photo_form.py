@@ -10,11 +10,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from simulearn.calibrate.form import number, with_blanks
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
 from simulearn.material import Section
 
-BLANK = re.compile(r"(?m)^(\s*[\w.-]+\s*=)[ \t]*(?=#|$)")  # a key with nothing behind it
 VALUE = re.compile(r'"[^"\n]*"|\'[^\'\n]*\'|[^,\s\[\]]+')
 
 
@@ -113,14 +113,14 @@ class FormText:
 
 def _parsed(text: str, path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(BLANK.sub(r'\1 ""', text))
-    except tomllib.TOMLDecodeError as error:
+        return tomllib.loads(with_blanks(text))
+    except ValueError as error:
         raise InputError(f"{path}: is not valid TOML: {error}", "photo-form") from error
 
 
 def _number(value: object) -> float | None:
-    """Return a length that a person wrote, also with a decimal comma; None where it is blank."""
+    """Return a length (mm) that a person wrote; None where it is blank or is none."""
     try:
-        return float(str(value).strip().replace(",", ".")) or None
+        return number("" if value is None else value) or None
     except ValueError:
         return None

@@ -108,7 +108,7 @@ def fit_(
 ) -> None:
     """Fit a material to the form's readings, and say how sure each of its numbers is."""
     from simulearn.calibrate import fit, read_form, write_material
-    from simulearn.material import load_material
+    from simulearn.material import check_name, load_material
     from simulearn.material.material import is_name
 
     if output is not None:
@@ -119,6 +119,10 @@ def fit_(
         beside = form.parent / filled.material  # as when plate and form have moved together
         filled = filled.model_copy(update={"material": str(beside)})
     base = load_material(filled.material)
+    if output is not None:
+        if not is_name(filled.material):
+            outputs.check_place(output, [Path(filled.material)])
+        check_name(output.stem, f"{output}: the material's name")
     with err.status("fitting") if err.is_terminal and not as_json else _nothing():
         found = fit(filled, base)
     if output is not None:

@@ -21,6 +21,7 @@ from simulearn.material.tables import tables
 HERE = Path(__file__).parent
 MOST_NAME = 80  # characters
 MOST_TITLE = 200
+NAMES = f"a name has 1 to {MOST_NAME} characters on one line, no slash and no colon"
 
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]  # no text and no true
 Positive = Annotated[Number, Field(gt=0)]
@@ -273,6 +274,11 @@ def is_name(text: str) -> bool:
     return not text.lower().endswith(".toml") and not set(text) & set("/\\:")
 
 
+def may_be_named(name: str) -> bool:
+    """Return whether a material may have a name; see `NAMES`."""
+    return bool(name) and len(name) <= MOST_NAME and name.isprintable() and is_name(name)
+
+
 def name_of(material: str | Material) -> str:
     """Return the name of what a grid is made of: a name or path, or the material itself."""
     return material.name if isinstance(material, Material) else material
@@ -344,12 +350,9 @@ def parsed(text: str) -> Material:
         raise fault_of(error, data) from error
     if (fault := size_fault(data)) is not None:
         raise fault
-    name, title = material.name, material.title
-    if not (name and len(name) <= MOST_NAME and name.isprintable() and is_name(name)):
-        shown = (
-            f"is {name[:MOST_SHOWN]!r}; it has 1 to {MOST_NAME} characters, no slash and no colon"
-        )
-        raise MaterialError("name", shown)
+    if not may_be_named(material.name):
+        raise MaterialError("name", f"is {material.name[:MOST_SHOWN]!r}; {NAMES}")
+    title = material.title
     if not (len(title) <= MOST_TITLE and title.isprintable()):
         raise MaterialError("title", f"is not one line of at most {MOST_TITLE} characters")
     return material

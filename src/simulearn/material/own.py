@@ -9,8 +9,8 @@ from typing import Any
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
-from simulearn.material.faults import MaterialError
-from simulearn.material.material import HERE, Material, names, parsed
+from simulearn.material.faults import MOST_SHOWN, MaterialError
+from simulearn.material.material import HERE, NAMES, Material, may_be_named, names, parsed
 
 MOST_MATERIALS = 16  # materials that anybody may send at once
 MOST_TEXT = 2**16  # characters of one
@@ -75,8 +75,22 @@ def own_material(text: str, place: str = "material") -> Material:
         code = "material-name" if fault.keys == "name" else "material-file"
         at = f"{place}, {fault.line}" if fault.line else where
         raise InputError(f"{where} {fault.reason}", code, at) from fault
-    name, where = material.name, f"{place}.name"
-    if name in names():
-        line = f'{where} is "{name}", a material that comes along; give yours another name'
-        raise InputError(line, "material-name", where)
+    check_name(material.name, f"{place}.name")
     return material
+
+
+def check_name(name: str, place: str) -> None:
+    """Make sure that a material of one's own may have a name.
+
+    Args:
+        name: of the material.
+        place: of the name, for messages.
+
+    Raises:
+        InputError: it is none, or that of a material that comes along.
+    """
+    if not may_be_named(name):
+        raise InputError(f"{place} is {name[:MOST_SHOWN]!r}; {NAMES}", "material-name", place)
+    if name in names():
+        line = f'{place} is "{name}", a material that comes along; give yours another name'
+        raise InputError(line, "material-name", place)
