@@ -7,7 +7,7 @@ import pytest
 import simulearn.calibrate.model as strips_model
 from simulearn.calibrate import Form, fit
 from simulearn.calibrate.measuring import simulated
-from simulearn.calibrate.parameters import base_values, material_with, values_of
+from simulearn.calibrate.parameters import base_values, check_base, material_with, values_of
 from simulearn.calibrate.plate import records
 from simulearn.errors import InputError
 from simulearn.material import load_material
@@ -122,6 +122,8 @@ def test_a_base_without_what_is_fitted_is_refused(part, key):
     with pytest.raises(InputError, match=f"{part}.{key} = 0") as caught:
         fit(arcs.filled(BASE, BASE), BASE.model_copy(update={part: none}))
     assert caught.value.code == "calibration-base"
+    with pytest.raises(InputError, match=f"{part}.{key} = 0"):  # before hours of printing
+        check_base(BASE.model_copy(update={part: none}))
 
 
 def test_a_material_beyond_the_family_is_said(by_formula):

@@ -33,6 +33,17 @@ def test_round_trip(tmp_path):
     assert read_form(tmp_path / "form.toml") == form
 
 
+def test_a_base_is_found_from_the_form(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plates").mkdir()
+    (tmp_path / "base.toml").write_text(material_text("pla-hot-water"))
+    file = tmp_path / "plates" / "form.toml"
+    write_form(FORM.model_copy(update={"material": "base.toml"}), file)
+    assert 'material = "../base.toml"' in file.read_text()
+    monkeypatch.chdir("/")
+    assert load_material(read_form(file).material) == BASE
+
+
 def test_what_a_person_writes():
     text = form_text(FORM).replace('measured = ""', "measured =")
     head, top = text.split("[strips.top]")

@@ -27,6 +27,7 @@ from simulearn.calibrate.noise import Noise
 from simulearn.calibrate.parameters import (
     WORDS,
     base_values,
+    check_base,
     material_with,
     parameters,
     with_section,
@@ -133,7 +134,7 @@ def fit(form: Form, base: Material, cancel: Cancel | None = None) -> Fit:
         ComputationError: a strip of the base or the fitted material has no simulation.
         CancelledError: the token said so.
     """
-    _check_base(base)
+    check_base(base)
     check_section(form, base.section)
     base = with_section(base, form.section.width, form.section.thickness)
     check_values(form, base.section.width)
@@ -154,21 +155,6 @@ def fit(form: Form, base: Material, cancel: Cancel | None = None) -> Fit:
     search.hold((search.deviations() / search.prior)[:-1] >= HELD)
     search.solve()
     return _result(form, base, search, [*mended, *dropped, *messages])
-
-
-def _check_base(base: Material) -> None:
-    """Make sure that numbers can be fitted as parts of the base's own."""
-    for key, value in (
-        ("shrinkage.active", base.shrinkage.active),
-        ("gravity.acceleration", base.gravity.acceleration),
-    ):
-        if not value:
-            raise InputError(
-                f"the base material {base.name} has {key} = 0, and what is fitted is how many "
-                "times as large it is; take a base that strains and weighs something",
-                "calibration-base",
-                key,
-            )
 
 
 def _singular(search: Search) -> Numbers:

@@ -27,6 +27,7 @@ from simulearn.errors import InputError
 from simulearn.files import read_text
 from simulearn.grid import Grid
 from simulearn.material.faults import reason
+from simulearn.material.material import is_name
 
 FORMAT: Literal["simulearn-calibration/1"] = "simulearn-calibration/1"
 MEASURED = ("before", "chord", "rise")  # what is measured of a strip, mm
@@ -200,12 +201,15 @@ class Form(_Data):
 
 
 def read_form(path: str | Path) -> Form:
-    """Return the form in a TOML file.
+    """Return the form in a TOML file; a path of its material is as seen from there.
 
     Raises:
         InputError: it cannot be read or is no form; the message names the key and the strip.
     """
-    return parse_form(read_text(path), str(path))
+    form = parse_form(read_text(path), str(path))
+    beside = Path(path).parent / form.material
+    moved = not is_name(form.material) and (beside.exists() or not Path(form.material).exists())
+    return form.model_copy(update={"material": str(beside)}) if moved else form
 
 
 def parse_form(text: str, path: str = "form") -> Form:

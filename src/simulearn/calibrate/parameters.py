@@ -69,6 +69,25 @@ def parameters(base: Material, family: Family = FAMILY) -> tuple[Parameter, ...]
     return tuple(found)
 
 
+def check_base(base: Material) -> None:
+    """Make sure that numbers can be fitted as parts of the base's own.
+
+    Raises:
+        InputError: the base has no strain or no weight.
+    """
+    for key, value in (
+        ("shrinkage.active", base.shrinkage.active),
+        ("gravity.acceleration", base.gravity.acceleration),
+    ):
+        if not value:
+            raise InputError(
+                f"the base material {base.name} has {key} = 0, and what is fitted is how many "
+                "times as large it is; take a base that strains and weighs something",
+                "calibration-base",
+                key,
+            )
+
+
 def base_values(base: Material) -> Numbers:
     """Return the numbers (P,) of the base material itself."""
     member = member_of(base)

@@ -115,9 +115,6 @@ def fit_(
         outputs.ending_of(output, (".toml",))
         outputs.check_place(output, [form])
     filled = read_form(form)
-    if not is_name(filled.material) and not Path(filled.material).exists():
-        beside = form.parent / filled.material  # as when plate and form have moved together
-        filled = filled.model_copy(update={"material": str(beside)})
     base = load_material(filled.material)
     if output is not None:
         if not is_name(filled.material):
