@@ -150,6 +150,8 @@ def test_a_scale_measures_without_the_sheet(photo):
 def test_what_cannot_be_measured_is_refused(photo):
     two = (replace(Strip(), place=(70.0, 90.0)), replace(Strip(), place=(100.0, 160.0)))
     assert code_of(photo(replace(SCENE, strips=two))) == "photo-strips"
+    touching = tuple(replace(Strip(), place=(50.0 + 30 * k, 60.0 + 40 * k)) for k in range(3))
+    assert code_of(photo(replace(SCENE, strips=touching))) == "photo-strips"
     aside = (replace(Strip(), place=(30.0, 120.0)),)
     assert code_of(photo(replace(SCENE, strips=aside, lamps=()))) == "photo-edge"
     blurred = photo(replace(SCENE, blur=2.6))
