@@ -10,7 +10,7 @@ import pytest
 import simulearn.calibrate.model as strips_model
 from simulearn.calibrate import read_form, write_form
 from simulearn.calibrate.parameters import base_values, material_with
-from simulearn.material import load_material, read_material
+from simulearn.material import Material, load_material, own_material, read_material
 
 BASE = load_material("pla-hot-water")
 
@@ -52,6 +52,12 @@ def test_fit_writes_a_material(run, tmp_path, form):
     assert "difference" in out
     made = read_material(target)
     assert made.name == "my-pla"
+    assert str(made.identity) in out
+    # The same material wherever it is used: the terminal, the studio and requests, programs.
+    assert own_material(target.read_text()).digest == made.digest
+    data = json.loads(run("calibrate", "fit", form, "-o", target, "--json")[1])
+    assert Material.model_validate(data["material"]) == made
+    assert data["digest"] == made.digest
     assert made.shrinkage.active == pytest.approx(0.85 * BASE.shrinkage.active, rel=0.06)
     assert made.law.scale == pytest.approx(1 / 1.6, rel=0.1)
     assert made.print == BASE.print

@@ -36,6 +36,7 @@ from simulearn.calibrate.search import Search
 from simulearn.calibrate.strips import strips_of
 from simulearn.errors import Cancel, InputError, Message
 from simulearn.material import Material
+from simulearn.material.material import MOST_NAME
 
 Numbers = NDArray[np.float64]
 HELD = 0.9  # a number whose standard deviation the readings leave above this part is not determined
@@ -92,7 +93,7 @@ class Fit:
     """A fitted material and all that qualifies it.
 
     Attributes:
-        material: the fitted one.
+        material: the fitted one, named after its base; its file has a name of its own.
         base: the one that was fitted, with the section that was measured.
         form: what was used of it.
         estimates: the numbers.
@@ -213,7 +214,9 @@ def _result(form: Form, base: Material, search: Search, messages: list[Message])
     messages += _edges(search)
     messages += _untold(estimates)
     return Fit(
-        material=material_with(base, search.at[:-1]),
+        material=material_with(base, search.at[:-1]).model_copy(
+            update={"name": f"{base.name} fitted"[-MOST_NAME:]}
+        ),
         base=base,
         form=form,
         estimates=estimates,

@@ -17,6 +17,7 @@ from simulearn.files import replacing
 
 if TYPE_CHECKING:
     from simulearn.calibrate import Fit
+    from simulearn.material import Material
 
 calibrate = typer.Typer(
     help="Fit a material to your printer and bath: print strips, measure, fit.",
@@ -122,10 +123,11 @@ def fit_(
         check_name(output.stem, f"{output}: the material's name")
     with err.status("fitting") if err.is_terminal and not as_json else _nothing():
         found = fit(filled, base)
+    made = found.material
     if output is not None:
-        write_material(found, output, form.name)
+        made = write_material(found, output, form.name)
     if as_json:
-        data = facts(found) | {"file": None if output is None else str(output)}
+        data = facts(found, made) | {"file": None if output is None else str(output)}
         print(json.dumps(data, allow_nan=False))
         return
     warn(found.messages)
@@ -139,14 +141,16 @@ def fit_(
     size, low, high = found.size
     out.print(f"printed over designed length: {size:.4f} ({low:.4f} to {high:.4f})")
     if output is not None:
+        out.print(f"material {escape(str(made.identity))}")
         print_files([output])
 
 
-def facts(found: "Fit") -> dict[str, Any]:
-    """Return a fit as plain data."""
+def facts(found: "Fit", made: "Material") -> dict[str, Any]:
+    """Return a fit as plain data, with the material as it was written."""
     noise = found.noise
     return {
-        "material": found.material.model_dump(mode="json"),
+        "material": made.model_dump(mode="json"),
+        "digest": made.digest,
         "numbers": [asdict(one) for one in found.estimates],
         "strips": [asdict(one) | {"difference": one.difference} for one in found.differences],
         "reading_mm": noise.reading,
