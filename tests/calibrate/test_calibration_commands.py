@@ -9,6 +9,7 @@ import pytest
 
 import simulearn.calibrate.model as strips_model
 from simulearn.calibrate import read_form, write_form
+from simulearn.calibrate.form import CaliperSection
 from simulearn.calibrate.parameters import base_values, material_with
 from simulearn.material import Material, load_material, own_material, read_material
 
@@ -81,6 +82,21 @@ def test_fit_writes_a_material(run, tmp_path, form):
     assert "another name" in run("calibrate", "fit", form, "-o", other)[2]
     assert not other.exists()
     assert again.read_text().count("scale =") == 1
+
+
+def test_what_the_caliper_said_is_simulated_and_laid_as_before(run, tmp_path, form):
+    section = CaliperSection(width=7.35, thickness=4.1)
+    write_form(read_form(form).model_copy(update={"section": section}), form)
+    target = tmp_path / "my-pla.toml"
+    code, _, err = run("calibrate", "fit", form, "-o", target)
+    assert code == 0, err
+    made = read_material(target)
+    assert (made.section.width, made.section.thickness) == (7.35, 4.1)
+    assert made.as_laid == BASE.section
+    printed = run("gcode", "flat", "--printer", "prusa-mk4", "--material", target, "--json")
+    assert printed[0] == 0, printed[2]
+    same = run("gcode", "flat", "--printer", "prusa-mk4", "--json")
+    assert json.loads(printed[1])["filament_mm"] == json.loads(same[1])["filament_mm"]
 
 
 def test_fit_for_programs(run, form):

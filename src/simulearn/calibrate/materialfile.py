@@ -60,6 +60,9 @@ def material_text(fit: Fit, name: str, source: str = "", today: date | None = No
     for key in ("width", "thickness"):
         if (measured := getattr(fit.form.section, key)) is not None:
             values["section", key] = measured, "by caliper"
+    if new.laid is not None:
+        for key, value in new.laid.model_dump().items():
+            values["laid", key] = value, "as printers lay it, to come out as measured"
     for one in fit.estimates:
         section, key = PLACES[one.name]
         value = getattr(getattr(new, section), key)

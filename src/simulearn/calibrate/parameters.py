@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from simulearn.errors import InputError
 from simulearn.material import Family, Material
 from simulearn.material.family import member_of
+from simulearn.material.material import Laid
 
 Numbers = NDArray[np.float64]
 
@@ -125,6 +126,8 @@ def material_with(base: Material, values: Numbers) -> Material:
 def with_section(base: Material, width: float | None, thickness: float | None) -> Material:
     """Return the base material with the section that was measured, mm; None keeps the base's.
 
+    Prints of it are laid as those of the base, which came out with this section.
+
     Raises:
         InputError: the shells are too wide for it.
     """
@@ -134,4 +137,7 @@ def with_section(base: Material, width: float | None, thickness: float | None) -
     if 2 * section.shell >= section.width:
         text = f"section.width is {width:g} mm; two shells of {section.shell:g} mm leave no core"
         raise InputError(text, "calibration-value", "section.width")
-    return base.model_copy(update={"section": section})
+    if not update:
+        return base
+    laid = base.laid or Laid(width=base.section.width, thickness=base.section.thickness)
+    return base.model_copy(update={"section": section, "laid": laid})

@@ -174,7 +174,7 @@ def prepare(
             f"the print is {settings.layers * settings.layer:g} mm high; {printer.name} reaches "
             f"{printer.bed.height:g} mm"
         )
-    section, bed = materials[0].section, printer.bed
+    section, bed = materials[0].as_laid, printer.bed
     margins = (settings.brim + SKIRT_ROOM, settings.brim) if dangling else ()
     placed = place(cleaned, section, printer, settings.brim, margins)
     path, from_build = build(placed, section, settings, bed)

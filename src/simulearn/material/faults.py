@@ -15,6 +15,8 @@ SIZES = (1e-15, 1e9, "")  # of a number that is not 0: least, most, unit
 SIZE_OF: dict[tuple[str | int, ...], tuple[float, float, str]] = {
     ("section", "width"): (0.1, 100.0, "mm"),
     ("section", "thickness"): (0.1, 100.0, "mm"),
+    ("laid", "width"): (0.1, 100.0, "mm"),
+    ("laid", "thickness"): (0.1, 100.0, "mm"),
     ("print", "layer"): (0.01, 10.0, "mm"),
     ("print", "line_width"): (0.05, 10.0, "mm"),
     ("law", "modulus"): (1e-6, 1e6, "MPa"),

@@ -11,7 +11,15 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    model_serializer,
+    model_validator,
+)
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
@@ -45,6 +53,13 @@ class Section(_Data):
         if 2 * self.shell >= self.width:
             raise ValueError(f"two shells of {self.shell} mm leave no core in {self.width} mm")
         return self
+
+
+class Laid(_Data):
+    """Section that a printer lays, mm, where the beams come out with another one."""
+
+    width: Positive
+    thickness: Positive
 
 
 class _Law(_Data):
@@ -231,6 +246,29 @@ class Material(_Data):
     print: Print
     limits: Limits
     scatter: Scatter = Scatter()
+    laid: Laid | None = None
+
+    @model_validator(mode="after")
+    def _core_is_laid(self) -> Self:
+        if self.laid is not None and 2 * self.section.shell >= self.laid.width:
+            shells = f"two shells of {self.section.shell} mm"
+            raise ValueError(f"{shells} leave no core in the {self.laid.width} mm that are laid")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_none(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Return the data; what does not say how it is laid has the digest that it always had."""
+        data: dict[str, Any] = handler(self)
+        if data.get("laid") is None:
+            data.pop("laid", None)
+        return data
+
+    @property
+    def as_laid(self) -> Section:
+        """The section of the beams as a printer lays them."""
+        if self.laid is None:
+            return self.section
+        return self.section.model_copy(update=self.laid.model_dump())
 
     @cached_property
     def digest(self) -> str:
