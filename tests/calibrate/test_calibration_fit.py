@@ -108,7 +108,7 @@ def test_a_strip_that_no_material_explains_is_said(by_formula):
     assert found.estimates[3].determined != "well"
 
 
-def test_signs_that_were_forgotten_are_asked_for(by_formula):
+def test_forgotten_signs_are_said(by_formula):
     form = arcs.filled(BASE, BASE, noise=0.1)
     for k in range(3):
         form = form.with_reading("long", k, rise=-form.strips["long"].rise[k])

@@ -70,7 +70,7 @@ def test_another_material_is_another_file(tmp_path: Path) -> None:
         ("width = 7.2", "width = 720.0", r"between 0\.1 and 100 mm"),
         ("density = 1.25e-9", "density = 1250.0", "tonne/mm3"),
         ("active = 0.09261", "active = 9.261", r"shrinkage\.active is 9\.261; .*less than 1"),
-        ('kind = "marlow"', 'kind = "neo-hookean"', r"law\.table is not a key"),
+        ('kind = "marlow"', 'kind = "neo-hookean"', r"law\.table is an unknown key"),
         ("[limits]", "[laid]\nwidth = 1.8\nthickness = 4\n[limits]", "leave no core in the 1.8"),
         ('name = "pla-hot-water"', 'name = ""', "a name has 1 to 80"),
         ('name = "pla-hot-water"', 'name = "a\\nb"', "a name has 1 to 80"),

@@ -24,7 +24,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from simulearn.errors import InputError
-from simulearn.files import read_text
+from simulearn.files import is_there, read_text
 from simulearn.grid import Grid
 from simulearn.material.faults import reason
 from simulearn.material.material import is_name
@@ -207,9 +207,11 @@ def read_form(path: str | Path) -> Form:
         InputError: it cannot be read or is no form; the message names the key and the strip.
     """
     form = parse_form(read_text(path), str(path))
-    beside = Path(path).parent / form.material
-    moved = not is_name(form.material) and (beside.exists() or not Path(form.material).exists())
-    return form.model_copy(update={"material": str(beside)}) if moved else form
+    beside = str(Path(path).parent / form.material)
+    moved = is_there(beside) or not is_there(form.material)
+    if is_name(form.material) or not moved:
+        return form
+    return form.model_copy(update={"material": beside})
 
 
 def parse_form(text: str, path: str = "form") -> Form:

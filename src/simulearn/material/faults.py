@@ -66,7 +66,7 @@ def reason(error: Any) -> str:
         known = error["ctx"]["expected_tags"].replace("'", '"')
         return f'is "{str(error["ctx"]["tag"])[:MOST_SHOWN]}"; it is one of {known}'
     if kind == "extra_forbidden":
-        return "is not a key that there is"
+        return "is an unknown key"
     if kind == "value_error":
         return f"is wrong: {error['ctx']['error']}"
     try:
