@@ -315,6 +315,10 @@ def test_another_material_replaces_the_grids_own(run, monkeypatch, tmp_path, lig
     code, out, err = run("gcode", small, "--printer", "prusa-mk4", "--material", light)
     assert code == 0, err
     assert str(read_material(light).identity) in out
+    text = light.read_text().replace("stress_joint = 0.118", "stress_joint = 0.5")
+    light.write_text(text.replace("acceleration = 0", "acceleration = 2000"))
+    said = run("validate", "saddle", "--material", light, "--model", "default")[1]
+    assert "material-not-learnt" in said
     assert "limit is 60 mm" in run("validate", "saddle", "--material", light)[1]
     assert "none.toml" in refused(
         run("gcode", small, "--printer", "prusa-mk4", "--material", "none.toml")
