@@ -26,6 +26,7 @@ import synthetic
 from simulearn import __version__, cli
 from simulearn.errors import ComputationError
 from simulearn.grid import grid_from_dict, grid_to_dict, library, make, read_grid
+from simulearn.material import read_material
 from simulearn.material.material import HERE
 from simulearn.outputs import FILMS, WRITERS
 from simulearn.schedule import Snap
@@ -274,7 +275,9 @@ def light(tmp_path):
     """The file of a material without weight."""
     path = tmp_path / "light.toml"
     text = (HERE / "pla-hot-water.toml").read_text("utf-8")
-    path.write_text(text.replace("acceleration = 2182", "acceleration = 0"), "utf-8")
+    text = text.replace("acceleration = 2182", "acceleration = 0")
+    text = text.replace("beam_length = 100", "beam_length = 60")
+    path.write_text(text.replace('name = "pla-hot-water"', 'name = "light [red]"'), "utf-8")
     return path
 
 
@@ -302,10 +305,21 @@ def test_another_material_replaces_the_grids_own(run, monkeypatch, tmp_path, lig
         ["optimize", task, "-o", tmp_path / "found"],
     ):
         materials.clear()
-        assert run(*words, "--material", light)[0] == 0, words
+        code, out, err = run(*words, "--material", light)
+        assert code == 0, err
         assert {material.gravity.acceleration for material in materials} == {0}, words
+        assert str(read_material(light).identity) in out.replace("\n", " ") or "-o" in words
+    summary = json.loads((tmp_path / "found" / "summary.json").read_text())
+    assert summary["material"] == read_material(light).identity.model_dump()
     assert "none.toml" in refused(run("simulate", "saddle", "--material", "none.toml"))
-    assert run("gcode", small, "--printer", "prusa-mk4", "--material", light)[0] == 0
+    code, out, err = run("gcode", small, "--printer", "prusa-mk4", "--material", light)
+    assert code == 0, err
+    assert str(read_material(light).identity) in out
+    text = light.read_text().replace("stress_joint = 0.118", "stress_joint = 0.5")
+    light.write_text(text.replace("acceleration = 0", "acceleration = 2000"))
+    said = run("validate", "saddle", "--material", light, "--model", "default")[1]
+    assert "material-not-learnt" in said
+    assert "limit is 60 mm" in run("validate", "saddle", "--material", light)[1]
     assert "none.toml" in refused(
         run("gcode", small, "--printer", "prusa-mk4", "--material", "none.toml")
     )

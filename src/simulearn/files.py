@@ -169,6 +169,14 @@ def read_text(path: Path | str, most: int = MOST_BYTES) -> str:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
 
 
+def is_there(path: Path | str) -> bool:
+    """Return whether there is such a file or folder; no where nothing can have such a name."""
+    try:
+        return Path(path).exists()
+    except (OSError, ValueError):
+        return False
+
+
 def path_from(folder: Path, path: Path) -> str:
     """Return a path as seen from a folder, with slashes; on another drive the whole path."""
     try:

@@ -9,8 +9,9 @@ import pytest
 
 import simulearn.calibrate.model as strips_model
 from simulearn.calibrate import read_form, write_form
+from simulearn.calibrate.form import CaliperSection
 from simulearn.calibrate.parameters import base_values, material_with
-from simulearn.material import load_material, read_material
+from simulearn.material import Material, load_material, own_material, read_material
 
 BASE = load_material("pla-hot-water")
 
@@ -52,6 +53,12 @@ def test_fit_writes_a_material(run, tmp_path, form):
     assert "difference" in out
     made = read_material(target)
     assert made.name == "my-pla"
+    assert str(made.identity) in out
+    # The same material wherever it is used: the terminal, the studio and requests, programs.
+    assert own_material(target.read_text()).digest == made.digest
+    data = json.loads(run("calibrate", "fit", form, "-o", target, "--json")[1])
+    assert Material.model_validate(data["material"]) == made
+    assert data["digest"] == made.digest
     assert made.shrinkage.active == pytest.approx(0.85 * BASE.shrinkage.active, rel=0.06)
     assert made.law.scale == pytest.approx(1 / 1.6, rel=0.1)
     assert made.print == BASE.print
@@ -67,7 +74,29 @@ def test_fit_writes_a_material(run, tmp_path, form):
     write_form(read_form(form).model_copy(update={"material": str(target)}), form)
     code, _, err = run("calibrate", "fit", form, "-o", again)
     assert code == 0, err
+    # What is read is not written over, and the names of materials that come along are theirs.
+    text = target.read_text()
+    assert "is what is read" in run("calibrate", "fit", form, "-o", target)[2]
+    assert target.read_text() == text
+    other = tmp_path / "pla-hot-water.toml"
+    assert "another name" in run("calibrate", "fit", form, "-o", other)[2]
+    assert not other.exists()
     assert again.read_text().count("scale =") == 1
+
+
+def test_what_the_caliper_said_is_simulated_and_laid_as_before(run, tmp_path, form):
+    section = CaliperSection(width=7.35, thickness=4.1)
+    write_form(read_form(form).model_copy(update={"section": section}), form)
+    target = tmp_path / "my-pla.toml"
+    code, _, err = run("calibrate", "fit", form, "-o", target)
+    assert code == 0, err
+    made = read_material(target)
+    assert (made.section.width, made.section.thickness) == (7.35, 4.1)
+    assert made.as_laid == BASE.section
+    printed = run("gcode", "flat", "--printer", "prusa-mk4", "--material", target, "--json")
+    assert printed[0] == 0, printed[2]
+    same = run("gcode", "flat", "--printer", "prusa-mk4", "--json")
+    assert json.loads(printed[1])["filament_mm"] == json.loads(same[1])["filament_mm"]
 
 
 def test_fit_for_programs(run, form):
@@ -89,3 +118,7 @@ def test_wrong_files(run, tmp_path, form):
     code, _, err = run("calibrate", "fit", form)
     assert code == 1
     assert "strip top, foo" in err
+    form.write_text(text.replace("[strips.top]", '[strips."[/x] top"]'))
+    code, out, err = run("calibrate", "fit", form)
+    assert code == 0, err
+    assert "[/x] top" in out

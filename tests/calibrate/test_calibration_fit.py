@@ -7,7 +7,7 @@ import pytest
 import simulearn.calibrate.model as strips_model
 from simulearn.calibrate import Form, fit
 from simulearn.calibrate.measuring import simulated
-from simulearn.calibrate.parameters import base_values, material_with, values_of
+from simulearn.calibrate.parameters import base_values, check_base, material_with, values_of
 from simulearn.calibrate.plate import records
 from simulearn.errors import InputError
 from simulearn.material import load_material
@@ -104,6 +104,26 @@ def test_a_strip_that_no_material_explains_is_said(by_formula):
     codes = {m.code for m in found.messages}
     assert "calibration-misfit" in codes
     assert found.spread > 2
+    assert "of strip half" in next(m.message for m in found.messages if "misfit" in m.code)
+    assert found.estimates[3].determined != "well"
+
+
+def test_forgotten_signs_are_said(by_formula):
+    form = arcs.filled(BASE, BASE, noise=0.1)
+    for k in range(3):
+        form = form.with_reading("long", k, rise=-form.strips["long"].rise[k])
+    said = {m.where: m.message for m in fit(form, BASE).messages if m.code == "calibration-sign"}
+    assert "is its sign right?" in said["strip long"]
+
+
+@pytest.mark.parametrize(("part", "key"), [("gravity", "acceleration"), ("shrinkage", "active")])
+def test_a_base_without_what_is_fitted_is_refused(part, key):
+    none = getattr(BASE, part).model_copy(update={key: 0.0})
+    with pytest.raises(InputError, match=f"{part}.{key} = 0") as caught:
+        fit(arcs.filled(BASE, BASE), BASE.model_copy(update={part: none}))
+    assert caught.value.code == "calibration-base"
+    with pytest.raises(InputError, match=f"{part}.{key} = 0"):  # before hours of printing
+        check_base(BASE.model_copy(update={part: none}))
 
 
 def test_a_material_beyond_the_family_is_said(by_formula):

@@ -3,10 +3,17 @@
 import pytest
 
 from simulearn.calibrate import Form, form_text, parse_form, read_form, write_form
-from simulearn.calibrate.checks import blanks, check_values, signs_mended, without_outliers
+from simulearn.calibrate.checks import (
+    blanks,
+    check_section,
+    check_values,
+    signs_mended,
+    without_outliers,
+)
+from simulearn.calibrate.form import CaliperSection
 from simulearn.calibrate.plate import records
 from simulearn.errors import InputError
-from simulearn.material import load_material
+from simulearn.material import load_material, material_text
 
 BASE = load_material("pla-hot-water")
 FORM = Form(printer='a "quoted" \\ one', strips=records(BASE, 3))
@@ -26,23 +33,39 @@ def test_round_trip(tmp_path):
     assert read_form(tmp_path / "form.toml") == form
 
 
+def test_a_base_is_found_from_the_form(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plates").mkdir()
+    (tmp_path / "base.toml").write_text(material_text("pla-hot-water"))
+    file = tmp_path / "plates" / "form.toml"
+    write_form(FORM.model_copy(update={"material": "base.toml"}), file)
+    assert 'material = "../base.toml"' in file.read_text()
+    monkeypatch.chdir("/")
+    assert load_material(read_form(file).material) == BASE
+
+
 def test_what_a_person_writes():
     text = form_text(FORM).replace('measured = ""', "measured =")
     head, top = text.split("[strips.top]")
-    top = top.replace('chord = ["", "", ""]', 'chord = [40, "40,5", " 39.9 "]')
+    top = top.replace('rise = ["", "", ""]', 'rise = [, , "−.3in"]')
+    top = top.replace('chord = ["", "", ""]', 'chord = [40, "40,5 mm", \'1.575"\']')
     form = parse_form(head + "[strips.top]" + top)
-    assert form.strips["top"].chord == (40.0, 40.5, 39.9)
+    assert form.strips["top"].chord == (40.0, 40.5, 40.005)
+    assert form.strips["top"].rise == (None, None, -7.62)
     assert form.measured == ""
 
 
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ('chord = ["", "", ""]', 'chord = ["", "5 cm", ""]', "strip top, chord of repeat 2: is "),
-        ('chord = ["", "", ""]', 'chord = ["", -3, ""]', "strip top, chord of repeat 2"),
-        ('chord = ["", "", ""]', 'chord = [true, "", ""]', "strip top, chord of repeat 1"),
+        ('chord = ["", "", ""]', 'chord = ["", "5 km", ""]', "strip top, chord of repeat 2 is "),
+        ('chord = ["", "", ""]', 'chord = ["", "gone", ""]', '"" where nothing was measured'),
+        ('chord = ["", "", ""]', 'chord = ["", -3, ""]', "chord and rise changed places"),
+        ('chord = ["", "", ""]', 'chord = [true, "", ""]', "strip top, chord of repeat 1 is True"),
+        ('chord = ["", "", ""]', 'chord = [nan, "", ""]', "strip top, chord of repeat 1 is nan"),
+        ('chord = ["", "", ""]', "chord = [40,1, 40,2, 40,3]", "decimals have a point"),
         ('chord = ["", "", ""]', 'chord = ["", ""]', "strip top: before has 3 values and chord 2"),
-        ('chord = ["", "", ""]', "", "strip top, chord: Field required"),
+        ('chord = ["", "", ""]', "", "strip top, chord is missing"),
         ('chord = ["", "", ""]', 'cord = ["", "", ""]', "strip top, "),
         ('chord = ["", "", ""]', 'chord = ["", "" ""]', "is not valid TOML"),
     ],
@@ -60,6 +83,7 @@ def test_bad_forms(old, new, says):
     [
         ("chord", 4.1, "seems to be in cm; write 41"),
         ("before", 4.72, "seems to be in cm; write 47.2"),
+        ("chord", 1.6, "seems to be in inches; write 40.64"),
         ("before", 1.86, "seems to be in inches"),
         ("before", 57.2, "is the strip another one?"),
         ("chord", 52.0, "a chord is shorter than its strip"),
@@ -71,6 +95,37 @@ def test_impossible_values(key, value, says):
         check_values(FORM.with_reading("top", 1, **{key: value}), BASE.section.width)
     assert says in str(caught.value)
     assert caught.value.code == "calibration-value"
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ({"chord": 7.4, "rise": 39.7}, "have chord and rise changed places"),
+        ({"chord": 4.1, "rise": 7.4}, "other repeats have 40.2; is a digit or the decimal point"),
+        ({"chord": 402.0, "rise": 7.4}, "other repeats have 40.2; is a digit or the decimal point"),
+    ],
+)
+def test_what_an_impossible_value_may_be(values, says):
+    form = FORM.with_reading("top", 0, chord=40.2, rise=7.3).with_reading("top", 1, **values)
+    with pytest.raises(InputError) as caught:
+        check_values(form, BASE.section.width)
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "says"),
+    [("thickness", 0.4, "in cm"), ("width", 0.28, "in inches"), ("width", 4.0, "another material")],
+)
+def test_a_section_that_was_not_printed(key, value, says):
+    form = FORM.model_copy(update={"section": CaliperSection(**{key: value})})
+    with pytest.raises(InputError, match=says) as caught:
+        check_section(form, BASE.section)
+    assert (caught.value.code, caught.value.where) == ("calibration-value", f"section.{key}")
+
+
+def test_what_is_no_form():
+    with pytest.raises(InputError, match="is no form of a calibration"):
+        parse_form(material_text("pla-hot-water"), "mine.toml")
 
 
 def test_possible_values_pass():

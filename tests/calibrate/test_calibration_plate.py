@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from matplotlib.patches import Ellipse
 
 from simulearn.calibrate import make_plate
 from simulearn.errors import InputError
 from simulearn.fabricate import load_printer, prepare
 from simulearn.fabricate.regions import footprint
 from simulearn.grid import outline
+from simulearn.show.plate import plate_map
 
 PRINTER = load_printer("ender-3")
 
@@ -53,6 +55,13 @@ def test_lengths_tell_strips_apart(plate):
     assert np.diff(lengths).min() > 9
     record = plate.form.strips["joints"]
     assert plate.length["joints"] == pytest.approx(sum(record.beams) + 7.2)
+
+
+def test_the_map_shows_the_bed_as_it_is():
+    bed = PRINTER.bed.model_copy(update={"width": 280.0, "depth": 280.0, "shape": "round"})
+    for one in (bed, bed.model_copy(update={"shape": "rectangle"})):
+        ax, *_ = plate_map(make_plate(PRINTER.model_copy(update={"bed": one}), repeats=1)).axes
+        assert any(isinstance(patch, Ellipse) for patch in ax.patches) == one.round
 
 
 def test_too_small_a_bed():

@@ -21,7 +21,7 @@ from simulearn.calibrate.photo_sheet import marker_corners, printed_size
 from simulearn.calibrate.photo_strip import KNOTS, _derivatives, _residuals, fit_curve
 from simulearn.cli.calibrate_photo import register
 from simulearn.errors import InputError
-from simulearn.material import load_material
+from simulearn.material import load_material, material_text
 from simulearn.show.photo_sheet import photo_sheet
 from strip_photos import RULER, Lamp, Lens, Scene, Strip, measures, save
 
@@ -38,16 +38,16 @@ thickness = "4,1"
 width =
 
 [strips.top]   # T1, T2
-beams = [50.0]
+beams = [60.0]
 actuators = [1.0]
-before = [56.9, ""]
+before = [66.9, ""]
 chord = ["", ""]   # between the tips
 rise = [ "", '' ]
 
 [strips.plain]
-beams = [80.0]
+beams = [70.0]
 actuators = [0.0]
-before = [87.0]
+before = [77.0]
 chord = [""]
 rise = [""]
 """
@@ -140,14 +140,18 @@ def test_a_scale_measures_without_the_sheet(photo):
     assert np.abs(off(result, scene.strips[0])).max() < 1.0
     assert result.measures.chord_deviation > 0.3
     assert [message.code for message in result.messages] == ["photo-scale-only"]
-    for wrong in ("1,2,3=4", "0,0,1,1=50", "0,0,9999,0=50"):
+    for wrong in ("1,2,3=4", "0,0,1,1=50", "0,0,9999,0=50", "0,0,900,0=1", "0,0,900,0=10000"):
         assert code_of(photo(scene), scale=wrong) == "photo-scale"
+    for height in (np.nan, -1.0, 5000.0):
+        assert code_of(photo(scene), scale=scale, scale_height=height) == "photo-scale"
     assert code_of(photo(scene)) == "photo-markers"
 
 
 def test_what_cannot_be_measured_is_refused(photo):
     two = (replace(Strip(), place=(70.0, 90.0)), replace(Strip(), place=(100.0, 160.0)))
     assert code_of(photo(replace(SCENE, strips=two))) == "photo-strips"
+    touching = tuple(replace(Strip(), place=(50.0 + 30 * k, 60.0 + 40 * k)) for k in range(3))
+    assert code_of(photo(replace(SCENE, strips=touching))) == "photo-strips"
     aside = (replace(Strip(), place=(30.0, 120.0)),)
     assert code_of(photo(replace(SCENE, strips=aside, lamps=()))) == "photo-edge"
     blurred = photo(replace(SCENE, blur=2.6))
@@ -176,6 +180,18 @@ def test_files_that_are_no_photos_are_refused(tmp_path):
         measure_photo(tmp_path / "none.jpg", SECTION)
     with pytest.raises(InputError, match="JPEG"):
         measure_photo(raw, SECTION)
+
+
+def test_pixels_of_16_bits_are_read(tmp_path):
+    grey = np.full((600, 700), 100 * 257, np.uint16)
+    Image.fromarray(grey).save(tmp_path / "grey.png")
+    assert (read_photo(tmp_path / "grey.png").pixels == 100).all()
+    Image.fromarray(grey.astype(np.float32)).save(tmp_path / "grey.tif")
+    with pytest.raises(InputError, match="save a copy as JPEG"):
+        read_photo(tmp_path / "grey.tif")
+    Image.new("1", (14000, 14000)).save(tmp_path / "huge.png")
+    with pytest.raises(InputError, match="million pixels"):
+        read_photo(tmp_path / "huge.png")
 
 
 def test_the_focal_length_and_crops_are_read_from_the_file(tmp_path):
@@ -272,15 +288,27 @@ def test_a_form_that_cannot_be_changed_is_left_alone(tmp_path):
     path = tmp_path / "form.toml"
     path.write_text(FORM, encoding="utf-8")
     assert FormText(path, "plain", 1).expected_sign is None
-    section = FormText(path, "top", 1).section(SECTION)
+    section = FormText(path, "top", 1).section(None)
     assert (section.thickness, section.width) == (4.1, 7.2)
+    # The base of the form is what was printed.
+    base = tmp_path / "base.toml"
+    base.write_text(material_text("pla-hot-water").replace("width = 7.2", "width = 8.0"))
+    path.write_text(FORM.replace("format", 'material = "base.toml"\nformat'), encoding="utf-8")
+    assert FormText(path, "top", 1).section(None).width == 8.0
+    assert FormText(path, "top", 1).section("pla-hot-water").width == 7.2
+    for old, new in (("actuators = [1.0]", 'actuators = ["x"]'), ("width =", 'width = "?"')):
+        path.write_text(FORM.replace(old, new), encoding="utf-8")
+        with pytest.raises(InputError) as refused:
+            FormText(path, "top", 1)
+        assert refused.value.code == "calibration-form"
+    path.write_text(FORM, encoding="utf-8")
     for strip, repeat in (("middle", 1), ("plain", 2)):
         with pytest.raises(InputError, match=r"repeats|no strip"):
             FormText(path, strip, repeat)
     odd = FORM.replace('chord = ["", ""]', 'chord = ["", # one\n ""]')
     path.write_text(odd, encoding="utf-8")
-    with pytest.raises(InputError, match=r"write chord 31.20 .*by hand"):
-        FormText(path, "top", 2).write({"chord": 31.2})
+    with pytest.raises(InputError, match=r"write chord 31.20 and rise 4.00 .*by hand"):
+        FormText(path, "top", 2).write({"chord": 31.2, "rise": 4.0})
     assert path.read_text(encoding="utf-8") == odd
 
 
@@ -295,6 +323,14 @@ def test_the_command_asks_for_the_sign_where_nothing_tells_it(photo, commands, f
     assert FormText(form, "plain", 1).record["rise"][0] < -10
     with pytest.raises(InputError, match="belong together"):
         commands(*words)
+    # A strip of another length is another strip.
+    form.write_text(FORM.replace("[70.0]", "[110.0]"), encoding="utf-8")
+    with pytest.raises(InputError, match="name the strip that it is"):
+        commands(*words, "--strip", "plain", "--up", "outside")
+    assert 'chord = [""]' in form.read_text(encoding="utf-8")
+    for wrong in (("--length", "nan"), ("--length", "-3"), ("--scale-height", "2")):
+        with pytest.raises(InputError, match=wrong[0]):
+            commands(*words[:4], *wrong)
 
 
 def test_shadows_are_not_the_strip(photo):

@@ -1,12 +1,13 @@
 """Grids and tasks that hold a material themselves instead of naming one."""
 
 import dataclasses
+import json
 
 import pytest
 
 from simulearn.errors import InputError
-from simulearn.grid import grid_from_dict, grid_to_dict, make
-from simulearn.inverse import task_from_dict
+from simulearn.grid import grid_from_dict, grid_to_dict, make, read_grid
+from simulearn.inverse import read_task, task_from_dict
 from simulearn.material import load_material, material_text, name_of, own_material
 from simulearn.simulate.checked import Checked, check_all
 
@@ -22,6 +23,31 @@ def test_a_grid_holds_its_material_and_is_written_with_its_name():
     assert grid.digest != grid_from_dict(GRID).digest
     with pytest.raises(InputError, match="my-pla"):
         load_material(grid_from_dict(GRID).material)
+
+
+def test_a_path_is_seen_from_here_or_from_the_grids_folder(tmp_path, monkeypatch):
+    folder = tmp_path / "designs"
+    folder.mkdir()
+    text = material_text("pla-hot-water")
+    (folder / "mine.toml").write_text(text.replace("width = 7.2", "width = 8.0"))
+    grid = GRID | {"material": "mine.toml"}
+    goals = [{"vertex": ["joint", 0, "centre"], "target": [0.0, 0.0, 5.0]}]
+    task = {"schema": "simulearn.task/1", "grid": grid, "goals": goals}
+    (folder / "grid.json").write_text(json.dumps(grid))
+    (folder / "task.json").write_text(json.dumps(task))
+
+    def widths():
+        task = read_task("designs/task.json", paths=True)
+        designs = read_grid("designs/grid.json", paths=True), task.start
+        return [load_material(design.material).section.width for design in designs]
+
+    monkeypatch.chdir(tmp_path)
+    assert widths() == [8.0, 8.0]
+    (tmp_path / "mine.toml").write_text(text)
+    assert widths() == [7.2, 7.2]
+    (folder / "grid.json").write_text(json.dumps(GRID | {"material": "x" * 999 + ".toml"}))
+    with pytest.raises(InputError, match="cannot be read"):
+        widths()
 
 
 def test_materials_of_one_name_are_distinguished():

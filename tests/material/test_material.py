@@ -8,8 +8,8 @@ import pytest
 from simulearn.errors import InputError
 from simulearn.fea import simulate_grid
 from simulearn.grid import Grid, make
-from simulearn.material import load_material, names
-from simulearn.material.material import HERE
+from simulearn.material import Material, load_material, names
+from simulearn.material.material import HERE, Laid
 
 PLA = (HERE / "pla-hot-water.toml").read_text(encoding="utf-8")
 
@@ -64,6 +64,16 @@ def test_another_material_is_another_file(tmp_path: Path) -> None:
         ('kind = "marlow"', 'kind = "magic"', "magic"),
         ("hold = 600.0", "hold = 600.0\nhalf = 1", "creep.half"),
         ("[section]", "[section", "not valid TOML"),
+        ("width = 7.2\n", "", r"section\.width is missing"),
+        ("width = 7.2", 'width = "7.2 mm"', "without quotes and without a unit"),
+        ("width = 7.2", "width = true", r"section\.width is True"),
+        ("width = 7.2", "width = 720.0", r"between 0\.1 and 100 mm"),
+        ("density = 1.25e-9", "density = 1250.0", "tonne/mm3"),
+        ("active = 0.09261", "active = 9.261", r"shrinkage\.active is 9\.261; .*less than 1"),
+        ('kind = "marlow"', 'kind = "neo-hookean"', r"law\.table is an unknown key"),
+        ("[limits]", "[laid]\nwidth = 1.8\nthickness = 4\n[limits]", "leave no core in the 1.8"),
+        ('name = "pla-hot-water"', 'name = ""', "a name has 1 to 80"),
+        ('name = "pla-hot-water"', 'name = "a\\nb"', "a name has 1 to 80"),
     ],
 )
 def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, message: str) -> None:
@@ -74,6 +84,7 @@ def test_a_wrong_file_is_explained(tmp_path: Path, old: str, new: str, message: 
         load_material(path)
     assert str(path) in str(caught.value)
     assert "\n" not in str(caught.value)
+    assert caught.value.code in ("material-file", "material-name")
 
 
 def test_an_unknown_material_names_the_known_ones() -> None:
@@ -100,6 +111,16 @@ def test_a_digest_is_of_the_contents():
     )
     assert narrow.digest != plain.digest
     assert narrow.physics == plain.physics  # no simulation depends on it
+
+
+def test_a_material_that_says_nothing_of_how_it_is_laid_has_the_digest_that_it_had():
+    plain = load_material("pla-hot-water")
+    assert plain.digest.startswith("251e102c4778")  # models, trials and documents go by it
+    laid = plain.model_copy(update={"laid": Laid(width=7.0, thickness=4.0)})
+    assert laid.digest != plain.digest
+    assert laid.physics == plain.physics
+    assert Material.model_validate_json(laid.model_dump_json()) == laid
+    assert "laid" not in plain.model_dump()
 
 
 def test_an_edited_file_is_another_material(tmp_path):

@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 
 from simulearn.calibrate.form import MEASURED, Form, StripRecord
 from simulearn.errors import InputError, Message
+from simulearn.material import Section
 
 Numbers = NDArray[np.float64]
 TOO_LONG = 1.02  # of the printed length; a strip swells by less
 SIZE = 0.05  # by so much of it a strip may be printed longer or shorter
 UNITS = {"cm": 10.0, "inches": 25.4, "m": 1000.0}
+OF_SECTION = 0.3  # by so much of it a caliper's value may differ from the base's section
 SLACK = 2.0  # mm
 SURE = 2.0  # mm, a rise of less may have either sign
 OUTLIER = 5.0  # standard deviations of a reading from the median of its repeats
@@ -25,6 +27,23 @@ LEAST_SD = 0.3  # mm
 # Of three normal numbers the median distance from their median is in the median 0.364 sd.
 OF_MIDDLE = 1 / 0.364
 SCATTER = 0.1  # of a rise, by which strips may differ
+
+
+def check_section(form: Form, section: Section) -> None:
+    """Make sure that what the caliper says can be of strips that were printed with a section.
+
+    Raises:
+        InputError: a value is far from the section's.
+    """
+    for key in ("width", "thickness"):
+        value, meant = getattr(form.section, key), getattr(section, key)
+        if value is not None and abs(value / meant - 1) > OF_SECTION:
+            where = f"section.{key}"
+            low, high = (1 - OF_SECTION) * meant, (1 + OF_SECTION) * meant
+            unit = _unit(value, low, high, meant)
+            why = f"it seems to be in {unit}" if unit else "is the form of another material?"
+            text = f"{where} is {value:g} mm, but the strips were printed {meant:g} mm; {why}"
+            raise InputError(text, "calibration-value", where)
 
 
 def check_values(form: Form, width: float) -> None:
@@ -50,15 +69,16 @@ def _wrong(name: str, record: StripRecord, width: float) -> Iterator[Message]:
     for k in range(record.repeats):
         before, chord, rise = (getattr(record, key)[k] for key in MEASURED)
         if before is not None and abs(before / length - 1) > SIZE:
-            yield _impossible(name, k, "before", before, length, length)
+            yield _impossible(name, k, "before", before, record, length)
         if chord is not None and not length / 8 < chord < TOO_LONG * length + SLACK / 2:
-            yield _impossible(name, k, "chord", chord, length, length)
+            yield _impossible(name, k, "chord", chord, record, length)
         elif rise is not None:
-            # Of all arcs of a length over a chord a triangle is the highest.
-            most = sqrt(max((length * TOO_LONG) ** 2 - (chord or 0.0) ** 2, 0.0)) / 2 + SLACK
+            most = _highest(length, chord)
             if abs(rise) > most:
                 where = f"strip {name}, rise of repeat {k + 1}"
                 over = f" over a chord of {chord:g} mm" if chord else ""
+                if chord and chord <= _highest(length, abs(rise)):
+                    over += "; have chord and rise changed places?"
                 yield Message(
                     "calibration-value",
                     where,
@@ -67,22 +87,35 @@ def _wrong(name: str, record: StripRecord, width: float) -> Iterator[Message]:
                 )
 
 
+def _highest(length: float, chord: float | None) -> float:
+    """Return the largest rise (mm) of a strip over a chord: of all arcs a triangle is highest."""
+    return sqrt(max((length * TOO_LONG) ** 2 - (chord or 0.0) ** 2, 0.0)) / 2 + SLACK
+
+
 def _impossible(
-    name: str, repeat: int, key: str, value: float, length: float, meant: float
+    name: str, repeat: int, key: str, value: float, record: StripRecord, length: float
 ) -> Message:
-    """Return the message for a length that a strip cannot have, with the unit it may be in."""
+    """Return the message for a length that a strip cannot have, with what it may be."""
     where = f"strip {name}, {key} of repeat {repeat + 1}"
     low = (1 - SIZE) * length if key == "before" else length / 3
-    for unit, mm in UNITS.items():
-        if low <= value * mm <= TOO_LONG * length + SLACK:
-            why = f"it seems to be in {unit}; write {value * mm:.4g} (mm)"
-            break
+    high = TOO_LONG * length + SLACK
+    others = [v for v in getattr(record, key) if v is not None and low <= v <= high]
+    if others:
+        why = f"other repeats have {others[0]:g}; is a digit or the decimal point missing?"
+    elif unit := _unit(value, low, high, length):
+        why = f"it seems to be in {unit}; write {value * UNITS[unit]:.4g} (mm)"
+    elif key == "before":
+        why = "is the strip another one?"
     else:
-        why = (
-            "is the strip another one?" if key == "before" else "a chord is shorter than its strip"
-        )
+        why = "a chord is shorter than its strip"
     text = f"{where} is {value:g} mm, but the strip was printed {length:g} mm long; {why}"
     return Message("calibration-value", where, text)
+
+
+def _unit(value: float, low: float, high: float, meant: float) -> str:
+    """Return the unit in which a value comes nearest to what is meant (mm); "" if none does."""
+    fitting = [unit for unit, mm in UNITS.items() if low <= value * mm <= high]
+    return min(fitting, key=lambda unit: abs(value * UNITS[unit] - meant), default="")
 
 
 def signs_mended(form: Form) -> tuple[Form, list[Message]]:

@@ -13,13 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2, t
 
-from simulearn.calibrate.checks import blanks, check_values, signs_mended, without_outliers
+from simulearn.calibrate.checks import (
+    SURE,
+    blanks,
+    check_section,
+    check_values,
+    signs_mended,
+    without_outliers,
+)
 from simulearn.calibrate.form import Form
 from simulearn.calibrate.model import Model
 from simulearn.calibrate.noise import Noise
 from simulearn.calibrate.parameters import (
     WORDS,
     base_values,
+    check_base,
     material_with,
     parameters,
     with_section,
@@ -28,6 +36,7 @@ from simulearn.calibrate.search import Search
 from simulearn.calibrate.strips import strips_of
 from simulearn.errors import Cancel, InputError, Message
 from simulearn.material import Material
+from simulearn.material.material import MOST_NAME
 
 Numbers = NDArray[np.float64]
 HELD = 0.9  # a number whose standard deviation the readings leave above this part is not determined
@@ -84,7 +93,7 @@ class Fit:
     """A fitted material and all that qualifies it.
 
     Attributes:
-        material: the fitted one.
+        material: the fitted one, named after its base; its file has a name of its own.
         base: the one that was fitted, with the section that was measured.
         form: what was used of it.
         estimates: the numbers.
@@ -122,10 +131,12 @@ def fit(form: Form, base: Material, cancel: Cancel | None = None) -> Fit:
         cancel: token that stops it.
 
     Raises:
-        InputError: a value is impossible, or there is none.
+        InputError: a value is impossible, there is none, or the base has no strain or no weight.
         ComputationError: a strip of the base or the fitted material has no simulation.
         CancelledError: the token said so.
     """
+    check_base(base)
+    check_section(form, base.section)
     base = with_section(base, form.section.width, form.section.thickness)
     check_values(form, base.section.width)
     messages = blanks(form)
@@ -165,18 +176,24 @@ def _misfit(search: Search) -> tuple[float, float]:
 def _result(form: Form, base: Material, search: Search, messages: list[Message]) -> Fit:
     """Return what a finished search has found."""
     spread, chance = _misfit(search)
+    differences = tuple(_differences(search))
     if chance < UNLIKELY:
+        far = max(differences, key=lambda one: abs(one.difference) / one.sd)
         text = (
             f"no material of the family gives all strips what was measured: they are {spread:.1f} "
-            "times as far off as their repeats from one another; all intervals are so much wider"
+            "times as far off as their repeats from one another; all intervals are so much wider; "
+            f"farthest off is the {far.key} of strip {far.strip}, {far.measured:.2f} mm, simulated "
+            f"{far.simulated:.2f}"
         )
         messages.append(Message("calibration-misfit", "form", text))
+        messages += _turned(differences)
     else:
         spread = 1.0
     reach = float(t.ppf((1 + COVERED) / 2, search.noise.freedom))
     sds = search.deviations()
     shares = sds / search.prior
-    widths = reach * np.minimum(sds * spread, np.maximum(sds, search.prior))
+    wide = np.minimum(sds * spread, np.maximum(sds, search.prior))
+    widened, widths = wide / search.prior, reach * wide
     low, high = (
         np.maximum(search.at - widths, search.low),
         np.minimum(search.at + widths, search.high),
@@ -189,16 +206,17 @@ def _result(form: Form, base: Material, search: Search, messages: list[Message])
             float(search.at[k]),
             float(low[k]),
             float(high[k]),
-            "not" if shares[k] >= HELD else "partly" if shares[k] > CLEAR else "well",
+            "not" if shares[k] >= HELD else "partly" if widened[k] > CLEAR else "well",
         )
         for k, one in enumerate(search.model.parameters)
     )
-    differences = tuple(_differences(search))
     messages += _strips_off(differences, spread)
     messages += _edges(search)
     messages += _untold(estimates)
     return Fit(
-        material=material_with(base, search.at[:-1]),
+        material=material_with(base, search.at[:-1]).model_copy(
+            update={"name": f"{base.name} fitted"[-MOST_NAME:]}
+        ),
         base=base,
         form=form,
         estimates=estimates,
@@ -229,6 +247,21 @@ def _differences(search: Search) -> Iterator[Difference]:
                     float(simulated[k]),
                     float(sds[k]),
                 )
+
+
+def _turned(differences: tuple[Difference, ...]) -> Iterator[Message]:
+    """Yield a warning for each strip that would bend as the base does with the other sign."""
+    for one in differences:
+        if one.key != "rise" or one.measured * one.before > 0:
+            continue
+        if min(abs(one.measured), abs(one.before)) > SURE:
+            side = "up" if one.before > 0 else "down"
+            text = (
+                f"the rise of strip {one.strip} is {one.measured:+.2f} mm, while the base material "
+                f"bends it {side} ({one.before:+.2f}); is its sign right? + is hollow on the side "
+                "that was up"
+            )
+            yield Message("calibration-sign", f"strip {one.strip}", text)
 
 
 def _strips_off(differences: tuple[Difference, ...], spread: float) -> Iterator[Message]:

@@ -1,7 +1,8 @@
 """The form of a calibration: which strips were printed, and what was measured of them.
 
 A form is a TOML file that a person fills in with a ruler and a caliper, or that `calibrate photo`
-fills in. What is left blank is not used. A value may stand in quotes and with a decimal comma.
+fills in. What is left blank is not used. A value may stand in quotes, with a decimal comma, and
+with its unit.
 
 How a strip is measured, out of the water and solid again (see docs/howto/calibrate.md):
 
@@ -14,6 +15,8 @@ rise:   the largest gap between straight edge and strip, mm; + where the strip i
 
 import re
 import tomllib
+from datetime import date, time
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -21,36 +24,68 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from simulearn.errors import InputError
-from simulearn.files import read_text
+from simulearn.files import is_there, read_text
 from simulearn.grid import Grid
+from simulearn.material.faults import reason
+from simulearn.material.material import is_name
 
 FORMAT: Literal["simulearn-calibration/1"] = "simulearn-calibration/1"
 MEASURED = ("before", "chord", "rise")  # what is measured of a strip, mm
+UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "inch": 25.4, "inches": 25.4}
+UNITS |= {'"': 25.4, "″": 25.4, "”": 25.4}
+READING = re.compile(r"([+-]?(?:\d*\.?\d+|\d+\.))\s*(\D*)")
+MINUS = str.maketrans({"−": "-", "–": "-", "—": "-", ",": "."})
+# A key with nothing behind it, and a place between commas with nothing in it.
+BLANK = re.compile(r"(?m)^(\s*[\w.-]+\s*=)[ \t]*(?=#|$)")
+ROW = re.compile(rf"(?m)^(\s*(?:{'|'.join(MEASURED)})\s*=\s*\[)([^\[\]#\n]*)(?=\])")
 
 
-def _number(value: Any) -> Any:
-    """Return what a person wrote as a number; None where it is blank."""
-    if isinstance(value, bool):
-        raise ValueError("is a truth value; write a number of mm")
-    if not isinstance(value, str):
-        return value
-    text = value.strip().replace(",", ".")
-    if not text:
+def number(value: Any) -> Any:
+    """Return what a person wrote as a number of mm; None where it is blank.
+
+    Args:
+        value: a number, or a text with a decimal point or comma and perhaps a unit.
+
+    Raises:
+        ValueError: it is neither; the text is the rest of a sentence.
+    """
+    if value is None:
         return None
-    if re.fullmatch(r"[+-]?\d*\.?\d+|[+-]?\d+\.", text):
-        return float(text)
-    raise ValueError(f'is "{value}"; write a number of mm without a unit')
+    if isinstance(value, str):
+        text = value.strip().translate(MINUS)
+        if not text:
+            return None
+        match = READING.fullmatch(text)
+        if match is not None and (mm := UNITS.get(match[2].strip().lower())) is not None:
+            return float(f"{float(match[1]) * mm:.9g}")  # 1.6 in and not 40.640000000000001
+    elif isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value):
+        return float(value)
+    raise ValueError(f'is {value!r}; write a number of mm, or "" where nothing was measured')
+
+
+def with_blanks(text: str) -> str:
+    """Return a form's text with "" wherever a person left nothing at all."""
+    return ROW.sub(_row, BLANK.sub(r'\1 ""', text))
+
+
+def _row(match: re.Match[str]) -> str:
+    """Return the head and the values of a row, with "" before and between commas alone."""
+    values = re.sub(r"^[ \t]*(?=,)", '""', match[2])
+    return match[1] + re.sub(r"(?<=,)[ \t]*(?=,)", ' ""', values)
 
 
 def _name(value: Any) -> Any:
     return (value.strip() or None) if isinstance(value, str) else value
 
 
-_Length = Annotated[
-    Annotated[float, Field(gt=0, allow_inf_nan=False)] | None, BeforeValidator(_number)
-]
-_Height = Annotated[Annotated[float, Field(allow_inf_nan=False)] | None, BeforeValidator(_number)]
+def _note(value: Any) -> Any:
+    return str(value) if isinstance(value, int | float | date | time) else value
+
+
+_Length = Annotated[Annotated[float, Field(gt=0)] | None, BeforeValidator(number)]
+_Height = Annotated[float | None, BeforeValidator(number)]
 _File = Annotated[str | None, BeforeValidator(_name)]
+_Note = Annotated[str, BeforeValidator(_note)]
 
 
 class _Data(BaseModel):
@@ -86,10 +121,13 @@ class StripRecord(_Data):
         if len(self.beams) != len(self.actuators):
             raise ValueError(f"has {len(self.beams)} beams and {len(self.actuators)} actuators")
         for key in ("before", "rise", *(["photo"] if self.photo else [])):
-            if len(getattr(self, key)) != len(self.chord):
+            count, chords = len(getattr(self, key)), len(self.chord)
+            if count != chords:
+                commas = 2 * min(count, chords) <= max(count, chords)
+                hint = "; decimals have a point, or stand in quotes" if commas else ""
                 raise ValueError(
-                    f"{key} has {len(getattr(self, key))} values and chord {len(self.chord)}; "
-                    'each has one for every repeat, "" where it is not measured'
+                    f"{key} has {count} values and chord {chords}; each has one for every repeat, "
+                    f'"" where it is not measured{hint}'
                 )
         return self
 
@@ -128,8 +166,8 @@ class Form(_Data):
 
     format: Literal["simulearn-calibration/1"] = FORMAT
     material: str = "pla-hot-water"
-    printer: str = ""
-    measured: str = ""
+    printer: _Note = ""
+    measured: _Note = ""
     section: CaliperSection = CaliperSection()
     strips: dict[str, StripRecord] = Field(min_length=1)
 
@@ -163,12 +201,17 @@ class Form(_Data):
 
 
 def read_form(path: str | Path) -> Form:
-    """Return the form in a TOML file.
+    """Return the form in a TOML file; a path of its material is as seen from there.
 
     Raises:
         InputError: it cannot be read or is no form; the message names the key and the strip.
     """
-    return parse_form(read_text(path), str(path))
+    form = parse_form(read_text(path), str(path))
+    beside = str(Path(path).parent / form.material)
+    moved = is_there(beside) or not is_there(form.material)
+    if is_name(form.material) or not moved:
+        return form
+    return form.model_copy(update={"material": beside})
 
 
 def parse_form(text: str, path: str = "form") -> Form:
@@ -181,21 +224,42 @@ def parse_form(text: str, path: str = "form") -> Form:
     Raises:
         InputError: it is no form; the message names the key and the strip.
     """
-    text = re.sub(r"(?m)^(\s*[\w.-]+\s*=)[ \t]*(?=#|$)", r'\1 ""', text)
     try:
-        return Form.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
+        data = tomllib.loads(with_blanks(text))
+    except ValueError as error:  # also of a number of thousands of digits
         raise InputError(
             f"{path}: is not valid TOML: {error}; values of repeats stand between [ and ] with "
-            "commas between them, decimals have a point",
+            "commas between them, decimals have a point with a digit on both sides",
             "calibration-form",
         ) from error
+    except RecursionError as error:
+        raise InputError(f"{path}: is nested too deeply", "calibration-form") from error
+    if "strips" not in data:
+        raise InputError(
+            f"{path}: is no form of a calibration, which has [strips.NAME]; `simulearn calibrate "
+            "plate` writes one",
+            "calibration-form",
+            "strips",
+        )
+    try:
+        return Form.model_validate(data)
     except ValidationError as error:
-        first = error.errors()[0]
+        first = error.errors(include_url=False)[0]
         where = _place(first["loc"])
-        why = first["msg"].removeprefix("Value error, ")
         others = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
-        raise InputError(f"{path}: {where}: {why}{others}", "calibration-form", where) from error
+        colon = ":" if first["loc"] and where == _place(first["loc"][:2]) else ""
+        text = f"{path}: {where}{colon} {_reason(first)}{others}"
+        raise InputError(text, "calibration-form", where) from error
+
+
+def _reason(error: Any) -> str:
+    """Return one of pydantic's errors as the rest of a sentence that begins with its place."""
+    if error["type"] == "value_error":
+        return str(error["ctx"]["error"])
+    words = reason(error)
+    if error["type"] == "greater_than" and "chord" in error["loc"]:
+        words += "; have chord and rise changed places?"
+    return words
 
 
 def _place(loc: tuple[int | str, ...]) -> str:

@@ -5,8 +5,9 @@ from pathlib import Path
 
 from simulearn.calibrate.form import MEASURED, Form, StripRecord
 from simulearn.calibrate.plate import KINDS, label
-from simulearn.files import replacing
+from simulearn.files import path_from, replacing
 from simulearn.material import load_material
+from simulearn.material.material import is_name
 
 HEAD = """\
 # Calibration form. Fill in what stands between the quotes; what stays "" is not used.
@@ -56,8 +57,13 @@ def form_text(form: Form) -> str:
 
 
 def write_form(form: Form, path: Path) -> None:
-    """Write the form; a reader never meets half of it."""
+    """Write the form, the path of its material as seen from there; nobody reads half of it."""
     text = form_text(form)
+    if not is_name(form.material):
+        seen = path_from(path.parent, Path(form.material))
+        text = text.replace(
+            f"\nmaterial = {quoted(form.material)} ", f"\nmaterial = {quoted(seen)} "
+        )
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 

@@ -18,7 +18,7 @@ from simulearn.errors import InputError
 from simulearn.fea import simulate_grid
 from simulearn.fea.bar import bar, curvature
 from simulearn.files import read_text, replacing
-from simulearn.material import Material
+from simulearn.material import Material, read_material
 from simulearn.material.family import member_of
 from simulearn.material.material import HERE, is_name
 
@@ -60,6 +60,9 @@ def material_text(fit: Fit, name: str, source: str = "", today: date | None = No
     for key in ("width", "thickness"):
         if (measured := getattr(fit.form.section, key)) is not None:
             values["section", key] = measured, "by caliper"
+    if new.laid is not None:
+        for key, value in new.laid.model_dump().items():
+            values["laid", key] = value, "as printers lay it, to come out as measured"
     for one in fit.estimates:
         section, key = PLACES[one.name]
         value = getattr(getattr(new, section), key)
@@ -76,8 +79,8 @@ def material_text(fit: Fit, name: str, source: str = "", today: date | None = No
     return text
 
 
-def write_material(fit: Fit, path: Path, source: str = "") -> None:
-    """Write the fitted material under the name of its file.
+def write_material(fit: Fit, path: Path, source: str = "") -> Material:
+    """Write the fitted material under the name of its file, and return it as it is read there.
 
     Raises:
         InputError: the file cannot be written.
@@ -85,6 +88,7 @@ def write_material(fit: Fit, path: Path, source: str = "") -> None:
     text = material_text(fit, path.stem, source)
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+    return read_material(path)
 
 
 def base_text(material: str) -> str:

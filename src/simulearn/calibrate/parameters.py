@@ -10,8 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from simulearn.errors import InputError
 from simulearn.material import Family, Material
 from simulearn.material.family import member_of
+from simulearn.material.material import Laid
 
 Numbers = NDArray[np.float64]
 
@@ -68,6 +70,25 @@ def parameters(base: Material, family: Family = FAMILY) -> tuple[Parameter, ...]
     return tuple(found)
 
 
+def check_base(base: Material) -> None:
+    """Make sure that numbers can be fitted as parts of the base's own.
+
+    Raises:
+        InputError: the base has no strain or no weight.
+    """
+    for key, value in (
+        ("shrinkage.active", base.shrinkage.active),
+        ("gravity.acceleration", base.gravity.acceleration),
+    ):
+        if not value:
+            raise InputError(
+                f"the base material {base.name} has {key} = 0, and what is fitted is how many "
+                "times as large it is; take a base that strains and weighs something",
+                "calibration-base",
+                key,
+            )
+
+
 def base_values(base: Material) -> Numbers:
     """Return the numbers (P,) of the base material itself."""
     member = member_of(base)
@@ -103,7 +124,20 @@ def material_with(base: Material, values: Numbers) -> Material:
 
 
 def with_section(base: Material, width: float | None, thickness: float | None) -> Material:
-    """Return the base material with the section that was measured, mm; None keeps the base's."""
+    """Return the base material with the section that was measured, mm; None keeps the base's.
+
+    Prints of it are laid as those of the base, which came out with this section.
+
+    Raises:
+        InputError: the shells are too wide for it.
+    """
     values = {"width": width, "thickness": thickness}
     update = {key: value for key, value in values.items() if value is not None}
-    return base.model_copy(update={"section": base.section.model_copy(update=update)})
+    section = base.section.model_copy(update=update)
+    if 2 * section.shell >= section.width:
+        text = f"section.width is {width:g} mm; two shells of {section.shell:g} mm leave no core"
+        raise InputError(text, "calibration-value", "section.width")
+    if not update:
+        return base
+    laid = base.laid or Laid(width=base.section.width, thickness=base.section.thickness)
+    return base.model_copy(update={"section": section, "laid": laid})

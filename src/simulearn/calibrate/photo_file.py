@@ -4,6 +4,7 @@ Telephones write the focal length that a lens would have on 35 mm film. It fixes
 camera was where the sheet alone does not, as in a photo from straight above.
 """
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +20,8 @@ FOCAL_IN_35_MM = 0xA405  # tags of EXIF 2.32 (CIPA DC-008)
 EXIF_BLOCK, PIXELS_ACROSS, PIXELS_DOWN = 0x8769, 0xA002, 0xA003
 SHORTEST = 500  # pixels of the shorter side
 LONGEST = 4600  # pixels of the longer side; more are averaged, since they carry no more
-MOST_PIXELS = 250_000_000
+MOST_PIXELS = 178_000_000  # Pillow opens no more
+SIXTEEN = ("I", "I;16", "I;16B", "I;16L", "I;16N")  # modes that hold a grey of 16 bits
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +65,20 @@ def read_photo(path: Path | str) -> Photo:
 
     path = Path(path)
     try:
-        with Image.open(path) as image:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(path)
+        with image:
             if image.width * image.height > MOST_PIXELS:
-                raise _wrong(path, f"has more than {MOST_PIXELS / 1e6:g} million pixels")
+                raise Image.DecompressionBombError
             exif = image.getexif()
-            upright = ImageOps.exif_transpose(image).convert("RGB")
+            upright = _coloured(ImageOps.exif_transpose(image))
     except FileNotFoundError as error:
         raise InputError(f"{path}: there is no such file") from error
-    except (Image.UnidentifiedImageError, Image.DecompressionBombError) as error:
+    except Image.DecompressionBombError as error:
+        many = f"has more than {MOST_PIXELS / 1e6:g} million pixels; save a smaller copy"
+        raise _wrong(path, many) from error
+    except Image.UnidentifiedImageError as error:
         hint = "a photo is a JPEG or PNG file"
         if path.suffix.lower() in (".heic", ".heif", ".dng"):
             hint = (
@@ -98,6 +106,18 @@ def read_photo(path: Path | str) -> Photo:
         )
     focal = focal / shrunk if focal else None
     return Photo(str(path), np.asarray(upright), focal, cropped, shrunk)
+
+
+def _coloured(image: Any) -> Any:
+    """Return a picture in red, green and blue of 8 bits."""
+    from PIL import Image
+
+    if image.mode in SIXTEEN:
+        grey = np.asarray(image).astype(np.float64)
+        image = Image.fromarray((grey / 257).clip(0, 255).astype(np.uint8))
+    elif image.mode == "F":
+        raise ValueError("its pixels are no whole numbers; save a copy as JPEG")
+    return image.convert("RGB")
 
 
 def _wrong(path: Path, text: str) -> InputError:

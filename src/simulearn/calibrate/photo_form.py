@@ -10,11 +10,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from simulearn.calibrate.checks import check_section
+from simulearn.calibrate.form import read_form, with_blanks
 from simulearn.errors import InputError
 from simulearn.files import read_text, replacing
-from simulearn.material import Section
+from simulearn.material import Section, load_material
 
-BLANK = re.compile(r"(?m)^(\s*[\w.-]+\s*=)[ \t]*(?=#|$)")  # a key with nothing behind it
+SHORTEST, LONGEST = 0.75, 1.05  # of its printed length, along the middle of a strip after the bath
 VALUE = re.compile(r'"[^"\n]*"|\'[^\'\n]*\'|[^,\s\[\]]+')
 
 
@@ -42,6 +44,7 @@ class FormText:
             raise InputError(
                 f'{path}: there is no strip "{strip}" in the form; it has {known}', "photo-form"
             )
+        self.form = read_form(path)  # says what is wrong with any of its values
         self.record = strips[strip]
         count = len(self.record.get("chord") or [])
         if not 1 <= repeat <= count:
@@ -52,18 +55,43 @@ class FormText:
     @property
     def expected_sign(self) -> float | None:
         """Sign of the rise by the strip's actuators; None where they do not tell it."""
-        ratios = [float(ratio) for ratio in self.record.get("actuators", [])]
+        ratios = self.form.strips[self.strip].actuators
         if any(ratio > 0 for ratio in ratios) and min(ratios) >= 0:
             return 1.0
         if any(ratio < 0 for ratio in ratios) and max(ratios) <= 0:
             return -1.0
         return None
 
-    def section(self, section: Section) -> Section:
-        """Return a section with what the form has of it by caliper."""
-        measured = self.data.get("section") or {}
-        values = {key: _number(measured.get(key)) for key in ("width", "thickness")}
-        return section.model_copy(update={key: value for key, value in values.items() if value})
+    def section(self, material: str | None) -> Section:
+        """Return the section of the strips: the caliper's, else that of a material.
+
+        Args:
+            material: name or path; None takes the form's own.
+        """
+        section = load_material(material or self.form.material).section
+        check_section(self.form, section)
+        values = self.form.section.model_dump(exclude_none=True)
+        return section.model_copy(update=values)
+
+    def check_length(self, length: float, width: float) -> None:
+        """Make sure that a strip in a photo may be the one of the form.
+
+        Args:
+            length: along its middle, mm.
+            width: of the strips, mm.
+
+        Raises:
+            InputError: it is much longer or shorter than that one was printed.
+        """
+        printed = self.form.strips[self.strip].length(width)
+        if not SHORTEST * printed <= length <= LONGEST * printed:
+            raise InputError(
+                f"the strip in the photo is {length:.1f} mm long, and strip {self.strip} was "
+                f"printed {printed:g} mm long; {self.path} stays as it is: name the strip that it "
+                "is, or see in the picture whether its ends are right",
+                "photo-form",
+                f"strip {self.strip}",
+            )
 
     def write(self, values: Mapping[str, float]) -> None:
         """Write values of the strip, such as chord and rise, mm.
@@ -73,7 +101,10 @@ class FormText:
         """
         text = self.text
         for key, value in values.items():
-            text = self._changed(text, key, f"{value:.2f}")
+            changed = self._changed(text, key, f"{value:.2f}")
+            if changed is None:
+                raise self._by_hand(values)
+            text = changed
         after = _parsed(text, self.path)
         for key, value in values.items():
             row = list(self.record[key])
@@ -84,21 +115,21 @@ class FormText:
         with replacing(self.path) as temporary:
             temporary.write_text(text, encoding="utf-8")
 
-    def _changed(self, text: str, key: str, value: str) -> str:
-        """Return the text with one value of one key of the strip changed."""
+    def _changed(self, text: str, key: str, value: str) -> str | None:
+        """Return the text with one value of one key of the strip changed; None if it cannot be."""
         name = re.escape(self.strip)
         head = re.search(rf"(?m)^[ \t]*\[\s*strips\s*\.\s*[\"']?{name}[\"']?\s*\]", text)
         if head is None:
-            raise self._by_hand({key: float(value)})
+            return None
         after = re.search(r"(?m)^[ \t]*\[[^\[\]\n=]+\][ \t]*(#.*)?$", text[head.end() :])
         end = head.end() + after.start() if after else len(text)
         row = re.search(rf"(?m)^[ \t]*{key}\s*=\s*\[([^\]#]*)\]", text[head.end() : end])
         if row is None:
-            raise self._by_hand({key: float(value)})
+            return None
         begin = head.end() + row.start(1)
         cells = list(VALUE.finditer(row[1]))
         if len(cells) < self.repeat:
-            raise self._by_hand({key: float(value)})
+            return None
         cell = cells[self.repeat - 1]
         return text[: begin + cell.start()] + value + text[begin + cell.end() :]
 
@@ -113,14 +144,6 @@ class FormText:
 
 def _parsed(text: str, path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(BLANK.sub(r'\1 ""', text))
-    except tomllib.TOMLDecodeError as error:
+        return tomllib.loads(with_blanks(text))
+    except ValueError as error:
         raise InputError(f"{path}: is not valid TOML: {error}", "photo-form") from error
-
-
-def _number(value: object) -> float | None:
-    """Return a length that a person wrote, also with a decimal comma; None where it is blank."""
-    try:
-        return float(str(value).strip().replace(",", ".")) or None
-    except ValueError:
-        return None

@@ -33,6 +33,8 @@ POINT = 1.5  # pixels, deviation of a point that a person read off
 NEARBY = 1.2  # of the length of a scale, within which the strip is looked for around it
 FAR_OFF = 1.0  # pixels, residual of the markers of a sheet that is not flat
 STEEP = 30.0  # degrees
+MOST_HIGH = 50.0  # mm, of the marks of a ruler over the table
+LEAST_SEEN, MOST_SEEN = 40.0, 1200.0  # mm along the longer side of a photo
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,8 +121,15 @@ def scale_reference(photo: Photo, text: str, height: float) -> Reference:
         height: of the points over the sheet, mm.
 
     Raises:
-        InputError: the text is no scale, or a point is not in the photo.
+        InputError: the text is no scale, a point is not in the photo, or the height is none.
     """
+    if not 0 <= height <= MOST_HIGH:
+        raise InputError(
+            f"the points of the scale are {height:g} mm high; they lie 0 to {MOST_HIGH:g} mm over "
+            "the table",
+            "photo-scale",
+            "scale_height",
+        )
     ends, length = _scale(text, photo)
     pixels_in_mm = float(np.linalg.norm(ends[1] - ends[0])) / length
     camera = camera_above(pixels_in_mm, height, photo.size, photo.focal)
@@ -185,6 +194,15 @@ def _scale(text: str, photo: Photo) -> tuple[Array, float]:
     if not ((ends >= -0.5) & (ends < np.array(photo.size))).all():
         raise InputError(
             f"a point of the scale {text} is not in the photo, which has {width} x {height} pixels",
+            "photo-scale",
+            "scale",
+        )
+    across = length * max(photo.size) / max(_distance(ends), 1.0)  # mm in the whole photo
+    if length and not LEAST_SEEN <= across <= MOST_SEEN:
+        raise InputError(
+            f"by the scale {text} the whole photo is {across:.4g} mm long, and photos of strips "
+            f"are {LEAST_SEEN:g} to {MOST_SEEN:g}; the length behind = is in mm, the points are "
+            "pixels of the photo as the camera gave it",
             "photo-scale",
             "scale",
         )

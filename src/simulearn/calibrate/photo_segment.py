@@ -30,6 +30,7 @@ LONG = 4.5  # times its width that a strip is long
 WIDTHS = (0.55, 1.9)  # of the expected thickness; the wall that is seen of a strip adds to it
 BORDER = 4  # pixels, nearer to the edge of what is searched a part is cut off by it
 UNEVEN = 0.16  # deviation of the width over the width, at most
+PART = 1.5  # times the length of the strip, something longer that it is a part of
 SECOND = 0.5  # of the length of the strip, another part that is a strip too
 
 
@@ -157,6 +158,7 @@ def find_strip(
         )
     best = min(inner, key=lambda band: _badness(band, width))
     _alone(best, inner)
+    _whole(best, bands)
     return best
 
 
@@ -275,6 +277,21 @@ def _alone(best: Band, bands: list[Band]) -> None:
         raise InputError(
             "there are several strips in the photo; photograph one at a time, and take rulers and "
             "other long things away",
+            "photo-strips",
+        )
+
+
+def _whole(best: Band, bands: list[Band]) -> None:
+    """Raise InputError if the best band is a part of a much longer one, cut by its threshold."""
+    if any(
+        band.kind == best.kind
+        and band.length > PART * best.length
+        and (band.mask & best.mask).sum() > best.mask.sum() / 2
+        for band in bands
+    ):
+        raise InputError(
+            "what looks like a strip is a part of something longer that is not evenly wide; "
+            "photograph one strip at a time, which touches nothing, in light from all around",
             "photo-strips",
         )
 

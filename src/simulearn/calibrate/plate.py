@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from simulearn.calibrate.form import Form, StripRecord
+from simulearn.calibrate.parameters import check_base
 from simulearn.errors import InputError
 from simulearn.fabricate import Job, Printer, prepare
 from simulearn.grid import Grid
@@ -102,11 +103,13 @@ def make_plate(printer: Printer, material: str = "pla-hot-water", repeats: int =
         repeats: how often each strip is printed; three or more tell how they scatter.
 
     Raises:
-        InputError: the strips do not fit on the bed, or the printer cannot print the material.
+        InputError: the strips do not fit on the bed, the printer cannot print the material, or no
+            other can be fitted to it.
     """
     if not 1 <= repeats <= MOST_REPEATS:
         raise InputError(f"repeats is {repeats}; it is 1 to {MOST_REPEATS}", where="repeats")
     base = load_material(material)
+    check_base(base)
     strips = records(base, repeats)
     grids: list[Grid] = []
     labels: list[str] = []

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from rich.markup import escape
 from rich.table import Table
 
 from simulearn import outputs
@@ -16,6 +17,7 @@ from simulearn.files import replacing
 
 if TYPE_CHECKING:
     from simulearn.calibrate import Fit
+    from simulearn.material import Material
 
 calibrate = typer.Typer(
     help="Fit a material to your printer and bath: print strips, measure, fit.",
@@ -107,23 +109,25 @@ def fit_(
 ) -> None:
     """Fit a material to the form's readings, and say how sure each of its numbers is."""
     from simulearn.calibrate import fit, read_form, write_material
-    from simulearn.material import load_material
+    from simulearn.material import check_name, load_material
     from simulearn.material.material import is_name
 
     if output is not None:
         outputs.ending_of(output, (".toml",))
         outputs.check_place(output, [form])
     filled = read_form(form)
-    if not is_name(filled.material) and not Path(filled.material).exists():
-        beside = form.parent / filled.material  # as when plate and form have moved together
-        filled = filled.model_copy(update={"material": str(beside)})
     base = load_material(filled.material)
+    if output is not None:
+        if not is_name(filled.material):
+            outputs.check_place(output, [Path(filled.material)])
+        check_name(output.stem, f"{output}: the material's name")
     with err.status("fitting") if err.is_terminal and not as_json else _nothing():
         found = fit(filled, base)
+    made = found.material
     if output is not None:
-        write_material(found, output, form.name)
+        made = write_material(found, output, form.name)
     if as_json:
-        data = facts(found) | {"file": None if output is None else str(output)}
+        data = facts(found, made) | {"file": None if output is None else str(output)}
         print(json.dumps(data, allow_nan=False))
         return
     warn(found.messages)
@@ -137,14 +141,16 @@ def fit_(
     size, low, high = found.size
     out.print(f"printed over designed length: {size:.4f} ({low:.4f} to {high:.4f})")
     if output is not None:
+        out.print(f"material {escape(str(made.identity))}")
         print_files([output])
 
 
-def facts(found: "Fit") -> dict[str, Any]:
-    """Return a fit as plain data."""
+def facts(found: "Fit", made: "Material") -> dict[str, Any]:
+    """Return a fit as plain data, with the material as it was written."""
     noise = found.noise
     return {
-        "material": found.material.model_dump(mode="json"),
+        "material": made.model_dump(mode="json"),
+        "digest": made.digest,
         "numbers": [asdict(one) for one in found.estimates],
         "strips": [asdict(one) | {"difference": one.difference} for one in found.differences],
         "reading_mm": noise.reading,
@@ -166,7 +172,11 @@ def _strips(found: "Fit") -> Table:
         values = (one.measured, one.before, one.simulated)
         words = [f"{value:.2f}" for value in values]
         table.add_row(
-            one.strip, one.key, str(one.count), *words, f"{one.difference:+.2f} ± {one.sd:.2f}"
+            escape(one.strip),
+            one.key,
+            str(one.count),
+            *words,
+            f"{one.difference:+.2f} ± {one.sd:.2f}",
         )
     return table
 

@@ -1,6 +1,7 @@
 """Commands that measure strips in photos: photo, sheet."""
 
 import json
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -80,13 +81,18 @@ def photo(
 
     picture = output or file.with_name(f"{file.stem}-found.png")
     _check_picture(picture, file)
+    if length is not None and not 0 < length < inf:
+        raise InputError(f"--length is {length:g}; it is a length in mm", "photo-length")
+    if scale is None and scale_height:
+        raise InputError("--scale-height goes with --scale: how high its points are", "photo-scale")
     if (form is None) != (strip is None):
         raise InputError("a form and the name of a strip in it belong together", "photo-form")
     text = FormText(form, strip, repeat) if form is not None and strip is not None else None
-    section = load_material(str(material or "pla-hot-water")).section
+    name = str(material) if material else None
+    section = text.section(name) if text else load_material(name or "pla-hot-water").section
     result = measure_photo(
         file,
-        text.section(section) if text else section,
+        section,
         scale=scale,
         scale_height=scale_height,
         printed=printed,
@@ -95,6 +101,7 @@ def photo(
     _draw(result, picture)
     rise, why = _rise(result, text)
     if text is not None:
+        text.check_length(result.curve.length, section.width)
         text.write({"chord": result.chord, "rise": rise})
     if as_json:
         files = [str(picture), *([str(form)] if form else [])]

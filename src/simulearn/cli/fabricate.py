@@ -92,7 +92,8 @@ def printers_(
             bed, nozzle = f"{p.bed.width:g} x {p.bed.depth:g}", str(p.print.get("nozzle", ""))
             bed = f"{p.bed.width:g}, round" if p.bed.round else bed
             tried, firmware = p.tried or "by nobody", p.firmware
-            table.add_row(title, p.title, bed, firmware, p.extruder.extrusion, nozzle, tried)
+            words = (title, p.title, bed, firmware, p.extruder.extrusion, nozzle, tried)
+            table.add_row(*map(escape, words))
         out.print(table)
         return
     profile = load_printer(name)
@@ -195,7 +196,7 @@ def _table(job: "Job") -> Table:
     table = Table(
         box=None,
         show_header=False,
-        title=f"{', '.join(job.names)} on {job.printer.title}",
+        title=escape(f"{', '.join(job.names)} on {job.printer.title}"),
         title_justify="left",
     )
     table.add_row(
@@ -204,6 +205,7 @@ def _table(job: "Job") -> Table:
     length = f"{needs.filament_mm / 1000:.2f} m of {settings.filament:g} mm"
     table.add_row("filament", f"{length}, {needs.filament_cm3:.1f} cm3, {needs.filament_g:.1f} g")
     bed = f"bed {settings.bed:g} C" if settings.bed else "bed off"
+    table.add_row("material", escape(str(job.material.identity)))
     table.add_row("heat", f"nozzle {settings.temperature:g} C, {bed}")
     table.add_row(
         "layers", f"{settings.layers} of {settings.layer:g} mm, rows {settings.line:g} mm"

@@ -8,7 +8,16 @@ import typer
 from rich.markup import escape
 from rich.table import Table
 
-from simulearn.cli.base import GridArgument, Json, app, grid_of, grouped, out, validated
+from simulearn.cli.base import (
+    GridArgument,
+    Json,
+    MaterialOption,
+    app,
+    grid_of,
+    grouped,
+    out,
+    validated,
+)
 from simulearn.errors import InputError
 from simulearn.grid import (
     Grid,
@@ -29,10 +38,18 @@ ModelOption = Annotated[
 
 
 @app.command("validate")
-def validate_(grid: GridArgument, model: ModelOption = None, as_json: Json = False) -> None:
+def validate_(
+    grid: GridArgument,
+    model: ModelOption = None,
+    material: MaterialOption = None,
+    as_json: Json = False,
+) -> None:
     """Check a grid: errors keep it from being simulated, warnings do not."""
     try:
-        report = validation_of(grid_of(grid), model)
+        design = grid_of(grid, material)
+        report = validation_of(design, model)
+        if model is not None and (remark := _remark(design, model)):
+            report = Validation(report.errors, (*report.warnings, remark))
     except InputError as error:
         if as_json:  # machines get the same form, whatever is wrong
             print(json.dumps(Validation((Message("input", "grid", str(error)),), ()).to_dict()))
@@ -86,6 +103,16 @@ def validation_of(grid: Grid, model: str | None) -> Validation:
     bundle.check()
     material = load_material(grid.material)
     return validate(grid, material, training=bundle.card.range.of(material))
+
+
+def _remark(grid: Grid, model: str) -> Message | None:
+    """Return that the material is outside what a model has learnt; None if it is within."""
+    from simulearn.simulate.learned import Learned
+
+    try:
+        return Learned.of(model).remark(load_material(grid.material))
+    except InputError:  # what the model needs is not installed here; its ranges hold all the same
+        return None
 
 
 def _cells(text: str) -> tuple[int, int]:

@@ -14,6 +14,7 @@ from rich.table import Table
 from simulearn.cli.base import err
 from simulearn.files import replacing
 from simulearn.grid import grid_to_dict
+from simulearn.material import load_material
 from simulearn.simulate.summary import remarks
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ BARS = "▁▂▃▄▅▆▇█"
 def search_words(figures: dict[str, Any], result: "SearchResult") -> Iterator[str]:
     """Yield what a person wants to know."""
     yield from _design_words(figures, result)
+    yield f"of material {escape(str(load_material(result.grid.material).identity))}"
     yield from _goal_words(figures)
     yield from _print_words(result)
 
@@ -162,6 +164,7 @@ def ranking_figures(ranking: "Ranking", engine: str) -> dict[str, Any]:
     """Return a ranking for machines."""
     return {
         "engine": engine,
+        "material": load_material(ranking.grid.material).identity.model_dump(),
         "error_mm": ranking.error_mm,
         **_probability(ranking),
         "modifications": [_modification(one) for one in ranking.suggestions],
@@ -194,7 +197,8 @@ def ranking_table(ranking: "Ranking", goals: bool) -> Table:
     title = f"{ranking.error_mm:.1f} mm as it is; " if goals else ""
     table = Table(
         box=None,
-        title=f"{title}{count} valid modifications, {shown}",
+        title=f"{title}{count} valid modifications, {shown}; material "
+        + escape(str(load_material(ranking.grid.material).identity)),
         title_justify="left",
     )
     table.add_column("", justify="right")

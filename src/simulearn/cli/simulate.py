@@ -285,9 +285,9 @@ def _table(result: "Result") -> Table:
     if "mesh" in numbers:
         mesh = f", {numbers['mesh']} mesh of {numbers['bricks']:,} bricks"
     caption = f"{result.engine}{mesh}, {_seconds(result.seconds)}{work}; millimetres, +z up"
-    caption += f"\nmaterial {result.material}"
+    caption += f"\nmaterial {escape(str(result.material))}"
     if result.model is not None:
-        caption += f", model {result.model}"
+        caption += f", model {escape(str(result.model))}"
     if result.bound_mm is not None:
         caption += f"\nnine of ten such answers are off by less than {result.bound_mm:.2f} mm"
     for collision in result.collisions[:COLLISIONS]:

@@ -84,6 +84,7 @@ class Job:
         return {
             "printer": self.printer.name,
             "material": self.material.name,
+            "material_digest": self.material.digest,
             "grids": [
                 {"name": name, "joints": grid.joints.tolist()}
                 for name, grid in zip(self.names, self.grids, strict=True)
@@ -104,7 +105,7 @@ class Job:
             InputError: the printer's start or end code is wrong.
             ComputationError: a move leaves the printer's reach.
         """
-        notes = [f"material = {self.material.name}"]
+        notes = [f"material = {self.material.identity}"]
         notes += [
             f"grid {k} = {name}, {len(grid.joints)} joints, {len(grid.beams)} beams"
             for k, (name, grid) in enumerate(zip(self.names, self.grids, strict=True))
@@ -173,7 +174,7 @@ def prepare(
             f"the print is {settings.layers * settings.layer:g} mm high; {printer.name} reaches "
             f"{printer.bed.height:g} mm"
         )
-    section, bed = materials[0].section, printer.bed
+    section, bed = materials[0].as_laid, printer.bed
     margins = (settings.brim + SKIRT_ROOM, settings.brim) if dangling else ()
     placed = place(cleaned, section, printer, settings.brim, margins)
     path, from_build = build(placed, section, settings, bed)

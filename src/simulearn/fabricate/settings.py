@@ -171,14 +171,14 @@ def settings_of(material: Material, printer: Printer) -> tuple[Settings, list[Me
     ]
     _temperatures(printer, ours)
     layers = _layers(material, ours)
-    rows = round(material.section.width / ours.line_width)
-    line = material.section.width / max(rows, 1)
-    shells = max(1, floor(material.section.shell / line + ROUNDING))
+    rows = round(material.as_laid.width / ours.line_width)
+    line = material.as_laid.width / max(rows, 1)
+    shells = max(1, floor(material.as_laid.shell / line + ROUNDING))
     if rows < 2 * shells + 2:
         raise InputError(
-            f"line_width is {ours.line_width:g} mm; a beam of {material.section.width:g} mm needs "
+            f"line_width is {ours.line_width:g} mm; a beam of {material.as_laid.width:g} mm needs "
             f"{2 * shells + 2} rows or more, so a line of at most "
-            f"{material.section.width / (2 * shells + 2):.2f} mm"
+            f"{material.as_laid.width / (2 * shells + 2):.2f} mm"
         )
     if ours.nozzle > line + ROUNDING:
         raise InputError(
@@ -256,7 +256,7 @@ def _temperatures(printer: Printer, ours: Print) -> None:
 
 def _layers(material: Material, ours: Print) -> int:
     """Return the number of layers; each half of a beam has an integer number of them."""
-    half = material.section.thickness / 2
+    half = material.as_laid.thickness / 2
     count = round(half / ours.layer)
     if not count or abs(count * ours.layer - half) > 1e-3 * half:
         raise InputError(
@@ -275,7 +275,7 @@ def _heights(material: Material, ours: Print, layers: int) -> tuple[float, ...]:
     first, others = ours.first_layer_height, layers // 2 - 1
     if not first:
         return (ours.layer,) * layers
-    half = material.section.thickness / 2
+    half = material.as_laid.thickness / 2
     rest = (half - first) / others if others else half
     least, most = RANGES["layer"]
     if not (least <= first and least <= rest <= most) or (not others and first != half):

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from simulearn.errors import InputError
-from simulearn.files import parse_json, read_text, replacing
+from simulearn.files import is_there, parse_json, read_text, replacing
 from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
 from simulearn.grid.arrays import shown, whole
 from simulearn.grid.grid import Grid
@@ -46,17 +46,35 @@ def read_grid(path: Path | str, *, paths: bool = False) -> Grid:
 
     Args:
         path: of the file.
-        paths: whether its material may be the path of a file; if not, it must be a name.
+        paths: whether its material may be the path of a file, as seen from here or else from the
+            grid's folder; if not, it must be a name.
 
     Raises:
         InputError: the file cannot be read or does not describe a grid; one line says where.
     """
     try:
-        return grid_from_dict(_data(path), paths=paths)
+        data = _data(path)
+        return grid_from_dict(
+            with_material(data, Path(path).parent) if paths else data, paths=paths
+        )
     except InputError as error:
         if str(error).startswith(f"{path}: "):
             raise
         raise InputError(f"{path}: {error}", error.code, error.where) from error
+
+
+def with_material(data: Any, folder: Path) -> Any:
+    """Return a grid's data, its material's path as found from here.
+
+    Args:
+        data: such as JSON gives.
+        folder: of its file, in which the material is looked for if it is not seen from here.
+    """
+    path = data.get("material") if isinstance(data, dict) else None
+    if not isinstance(path, str) or is_name(path) or is_there(path):
+        return data
+    beside = str(folder / path)
+    return data | {"material": beside} if is_there(beside) else data
 
 
 def _data(path: Path | str) -> Any:

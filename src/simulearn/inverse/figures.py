@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from simulearn.inverse.found import SearchResult
 from simulearn.inverse.task import Task
+from simulearn.material import load_material
 
 
 def search_figures(task: Task, result: SearchResult) -> dict[str, Any]:
@@ -16,6 +17,7 @@ def search_figures(task: Task, result: SearchResult) -> dict[str, Any]:
     return {
         "method": task.method,
         "engine": task.engine,
+        "material": load_material(task.start.material).identity.model_dump(),
         "error_mm": result.error_mm,
         "error_fea_mm": check.error_fea_mm if check else None,
         "why_no_fea": check.why if check and check.error_fea_mm is None else None,

@@ -12,6 +12,7 @@ from simulearn.files import parse_json, path_from, read_text, replacing
 from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.arrays import whole
 from simulearn.grid.cleaning import removals
+from simulearn.grid.gridfile import with_material
 from simulearn.inverse.goalfile import CurveFile, FilePart, Goal, Positive, SurfaceFile
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.tasktext import KEYS, MOST_ANSWERS, line_of, place_of
@@ -175,7 +176,10 @@ def read_task(path: Path | str, *, paths: bool = False) -> Task:
     """
     try:
         folder = Path(path).parent if paths else None
-        return task_from_dict(parse_json(read_text(path)), paths=paths, folder=folder)
+        data = parse_json(read_text(path))
+        if folder is not None and isinstance(data, dict) and "grid" in data:
+            data |= {"grid": with_material(data["grid"], folder)}
+        return task_from_dict(data, paths=paths, folder=folder)
     except InputError as error:
         if isinstance(error.__cause__, OSError | UnicodeDecodeError):
             raise

@@ -13,7 +13,7 @@ from simulearn.material.material import (
     names,
     read_material,
 )
-from simulearn.material.own import material_text, materials_of, own_material
+from simulearn.material.own import check_name, material_text, materials_of, own_material
 
 __all__ = [
     "ElasticData",
@@ -24,6 +24,7 @@ __all__ = [
     "Member",
     "Scatter",
     "Section",
+    "check_name",
     "draw_member",
     "load_material",
     "material_text",

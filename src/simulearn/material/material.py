@@ -6,22 +6,35 @@ and print settings. Nothing of it is repeated in code: another file is another m
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Mapping
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    ValidationError,
+    model_serializer,
+    model_validator,
+)
 
 from simulearn.errors import InputError
 from simulearn.files import read_text
+from simulearn.material.faults import MOST_SHOWN, MaterialError, fault_of, size_fault
+from simulearn.material.tables import tables
 
 HERE = Path(__file__).parent
+MOST_NAME = 80  # characters
+MOST_TITLE = 200
+NAMES = f"a name has 1 to {MOST_NAME} characters on one line, no slash and no colon"
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Poisson = Annotated[float, Field(gt=-1, le=0.49)]  # beyond, the bricks lock
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]  # no text and no true
+Positive = Annotated[Number, Field(gt=0)]
+NotNegative = Annotated[Number, Field(ge=0)]
+Poisson = Annotated[Number, Field(gt=-1, le=0.49)]  # beyond, the bricks lock
 
 
 class _Data(BaseModel):
@@ -40,6 +53,13 @@ class Section(_Data):
         if 2 * self.shell >= self.width:
             raise ValueError(f"two shells of {self.shell} mm leave no core in {self.width} mm")
         return self
+
+
+class Laid(_Data):
+    """Section that a printer lays, mm, where the beams come out with another one."""
+
+    width: Positive
+    thickness: Positive
 
 
 class _Law(_Data):
@@ -83,12 +103,12 @@ class Shrinkage(_Data):
     bends, upwards where it is positive, by about `curl` over the thickness.
     """
 
-    active: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
-    shell: Annotated[float, Field(ge=0, lt=1, allow_inf_nan=False)]
+    active: Annotated[Number, Field(ge=0, lt=1)]
+    shell: Annotated[Number, Field(ge=0, lt=1)]
     stress_active: Positive
     stress_passive: NotNegative
     stress_joint: NotNegative
-    curl: Annotated[float, Field(gt=-0.5, lt=0.5, allow_inf_nan=False)] = 0.0
+    curl: Annotated[Number, Field(gt=-0.5, lt=0.5)] = 0.0
 
     @property
     def passive(self) -> float:
@@ -139,7 +159,7 @@ class Creep(_Data):
     """Findley creep: compliance 1 + amplitude (t / hold)^exponent of the load-driven part."""
 
     amplitude: NotNegative
-    exponent: Annotated[float, Field(gt=0, le=1)]
+    exponent: Annotated[Number, Field(gt=0, le=1)]
     hold: Positive
 
 
@@ -151,15 +171,15 @@ class Scatter(_Data):
         beam: from beam to beam of one print.
     """
 
-    print: Annotated[float, Field(ge=0, le=0.5)] = 0.0
-    beam: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    print: Annotated[Number, Field(ge=0, le=0.5)] = 0.0
+    beam: Annotated[Number, Field(ge=0, le=0.5)] = 0.0
 
 
 class Bath(_Data):
     """Temperatures of the bath and of resolidification, C."""
 
-    temperature: float
-    resolidification: float
+    temperature: Number
+    resolidification: Number
 
 
 class Print(_Data):
@@ -226,6 +246,29 @@ class Material(_Data):
     print: Print
     limits: Limits
     scatter: Scatter = Scatter()
+    laid: Laid | None = None
+
+    @model_validator(mode="after")
+    def _core_is_laid(self) -> Self:
+        if self.laid is not None and 2 * self.section.shell >= self.laid.width:
+            shells = f"two shells of {self.section.shell} mm"
+            raise ValueError(f"{shells} leave no core in the {self.laid.width} mm that are laid")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _without_none(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Return the data; what does not say how it is laid has the digest that it always had."""
+        data: dict[str, Any] = handler(self)
+        if data.get("laid") is None:
+            data.pop("laid", None)
+        return data
+
+    @property
+    def as_laid(self) -> Section:
+        """The section of the beams as a printer lays them."""
+        if self.laid is None:
+            return self.section
+        return self.section.model_copy(update=self.laid.model_dump())
 
     @cached_property
     def digest(self) -> str:
@@ -267,6 +310,11 @@ def names() -> list[str]:
 def is_name(text: str) -> bool:
     """Return whether a text can be the name of a material system, and not a path."""
     return not text.lower().endswith(".toml") and not set(text) & set("/\\:")
+
+
+def may_be_named(name: str) -> bool:
+    """Return whether a material may have a name; see `NAMES`."""
+    return bool(name) and len(name) <= MOST_NAME and name.isprintable() and is_name(name)
 
 
 def name_of(material: str | Material) -> str:
@@ -319,10 +367,30 @@ def _shipped(path: Path, changed: int, size: int) -> Material:
 def _parsed(text: str, path: str) -> Material:
     """Return the material system of a text; the same text is parsed once."""
     try:
-        return Material.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{path}: is not valid TOML: {error}") from error
+        return parsed(text)
+    except MaterialError as fault:
+        of_name = fault.keys == "name"
+        raise InputError(
+            f"{path}: {fault}", "material-name" if of_name else "material-file", fault.keys
+        ) from fault
+
+
+def parsed(text: str) -> Material:
+    """Return the material system of a TOML text, whoever wrote it.
+
+    Raises:
+        MaterialError: it is none.
+    """
+    data = tables(text)
+    try:
+        material = Material.model_validate(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise InputError(f"{path}: {where}: {first['msg']}", where=where) from error
+        raise fault_of(error, data) from error
+    if (fault := size_fault(data)) is not None:
+        raise fault
+    if not may_be_named(material.name):
+        raise MaterialError("name", f"is {material.name[:MOST_SHOWN]!r}; {NAMES}")
+    title = material.title
+    if not (len(title) <= MOST_TITLE and title.isprintable()):
+        raise MaterialError("title", f"is not one line of at most {MOST_TITLE} characters")
+    return material

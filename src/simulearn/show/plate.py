@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon, Rectangle
+from matplotlib.patches import Ellipse, Patch, Polygon, Rectangle
 from numpy.typing import NDArray
 
 from simulearn.calibrate import Plate, label
@@ -74,7 +74,12 @@ def _bed(ax: Axes, plate: Plate) -> None:
     """Draw the edge of the bed and where its front is."""
     bed = plate.job.printer.bed
     (x0, y0), (x1, y1) = bed.low, bed.high
-    ax.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, fc="none", ec=style.GHOST_LINE, lw=1.0))
+    if bed.round:
+        edge: Patch = Ellipse(((x0 + x1) / 2, (y0 + y1) / 2), x1 - x0, y1 - y0)
+    else:
+        edge = Rectangle((x0, y0), x1 - x0, y1 - y0)
+    edge.set(fc="none", ec=style.GHOST_LINE, lw=1.0)
+    ax.add_patch(edge)
     words = f"front of the bed of {plate.job.printer.title}"
     ax.text((x0 + x1) / 2, y0 - 1.0, words, fontsize=6.5, ha="center", va="top")
 

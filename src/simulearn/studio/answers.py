@@ -295,6 +295,7 @@ class Suggestion(Modification):
 class RankAnswer(_Answer):
     """All modifications of a design, the best first."""
 
+    material: Identity
     error_mm: float
     points: Annotated[list[Point], Field(description="where the goals' vertices are")]
     best: list[Suggestion]

@@ -174,6 +174,7 @@ def _ranked(data: Any, settings: Settings, cancel: Cancel) -> Response:
     ranking = rank(task, engine_of(task.engine), cancel=cancel)
     return json_response(
         {
+            "material": load_material(ranking.grid.material).identity.model_dump(),
             "error_mm": ranking.error_mm,
             "points": ranking.points.tolist(),
             "best": [_suggestion(one) for one in ranking.best],
