@@ -259,7 +259,9 @@ def test_the_command_tells_and_writes_the_spread(run, quick, tmp_path):
         "-o",
         f"{tmp_path}/all/",
     )
-    assert run(*words)[0] == 0
+    code, out, _ = run(*words)
+    assert code == 0
+    assert "prints ±, mm" in out
     assert json.loads((tmp_path / "all" / "h.json").read_text())["scatter"]["drawn"] == 16
 
 

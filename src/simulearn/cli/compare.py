@@ -63,7 +63,7 @@ def compare(
             "-o",
             "--output",
             help="A file to write (repeat for more): .png .pdf .svg the picture; .json all "
-            "figures; .csv the measured joints, as a calibration takes them.",
+            "figures; .csv the measured joints, which compare reads again.",
         ),
     ] = None,
     as_json: Json = False,
@@ -131,7 +131,7 @@ def _print(found: "Comparison") -> None:
     for line in qualified(found):
         out.print(escape(line))
     out.print(escape(verdict(found)))
-    out.print("[dim]`simulearn calibrate` fits a material to measured joints (-o joints.csv)[/]")
+    out.print("[dim]`simulearn calibrate` fits a material to printed strips[/]")
 
 
 def _joints(found: "Comparison") -> Table:

@@ -1,4 +1,4 @@
-"""A comparison in numbers and in words, and as the table of joints that a calibration takes."""
+"""A comparison in numbers and in words, and as a table of joints, which is read again."""
 
 import csv
 from pathlib import Path
