@@ -48,6 +48,7 @@ def test_tables_of_joints_are_read_however_they_are_written(text):
     table = read_table(text)
     assert table.places == pytest.approx(np.array(PLACES))
     assert table.numbers.tolist() == [0, 1, 2, 3]
+    assert {m.code for m in table.messages} <= {"measurement-empty"}
 
 
 @pytest.mark.parametrize("name", ["Gelenk", "n\u0153ud", "\u5173\u8282", ""])

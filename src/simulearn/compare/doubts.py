@@ -97,10 +97,11 @@ def alone(places: Numbers, simulated: Numbers, dimension: float, names: Indices)
     residual = rms(places, simulated)
     if len(places) < FEWEST or residual < NOTICED * dimension:
         return []
-    poses = [rigid(*(np.delete(p, k, axis=0) for p in (places, simulated)))
-             for k in range(len(places))]  # fmt: skip
-    left = [rms(np.delete(pose(places), k, axis=0), np.delete(simulated, k, axis=0))
-            for k, pose in enumerate(poses)]  # fmt: skip
+    poses, left = [], []
+    for k in range(len(places)):
+        ours, theirs = np.delete(places, k, axis=0), np.delete(simulated, k, axis=0)
+        poses.append(rigid(ours, theirs))
+        left.append(rms(poses[k](ours), theirs))
     k = int(np.argmin(left))
     if left[k] * ALONE > residual:
         return []

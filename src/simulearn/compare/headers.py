@@ -69,8 +69,8 @@ def columns_by_header(header: Row, rows: Sequence[Row]) -> Columns:
         text = f"{where} names different units for x, y and z; give all three in one"
         raise InputError(text, "measurement-table", where)
     unit = units.pop() if units else None
-    joint = next((k for name in NAMES for k, words in enumerate(names) if name == " ".join(words)),
-                 None)  # fmt: skip
+    others = [k for k in range(len(names)) if k not in (x, y, z)]
+    joint = next((k for name in NAMES for k in others if name in names[k]), None)
     messages: tuple[Message, ...] = ()
     if joint is None:
         joint = next((k for k in range(min(x, y, z)) if _numbers_joints(rows, k)), None)
