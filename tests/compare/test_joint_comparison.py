@@ -4,9 +4,11 @@ import numpy as np
 import printed
 import pytest
 
-from simulearn.compare import JointPlaces, compare
+from simulearn.compare import JointPlaces, compare, read_measurement
 from simulearn.compare.deviation import without_motion
+from simulearn.compare.doubts import exchanged
 from simulearn.compare.matching import matches
+from simulearn.compare.report import figures, write_joints
 from simulearn.errors import InputError
 from simulearn.grid import Grid
 
@@ -104,7 +106,7 @@ def test_a_grid_that_hardly_fits_is_warned_of():
     assert "measurement-far" in codes(compared(JointPlaces(places, EVERY)))
 
 
-def test_numbers_are_those_of_the_file_though_beams_that_dangle_are_taken_off():
+def test_numbers_are_those_of_the_file_though_beams_that_dangle_are_taken_off(tmp_path):
     grid = BASE.grid
     joints = np.r_[[[-99.0, -99.0], [-60.0, -45.0]], grid.joints]
     whole = Grid(joints, np.r_[grid.beams + 2, [[1, 2]]], np.r_[grid.actuators, 0.0],
@@ -120,3 +122,41 @@ def test_numbers_are_those_of_the_file_though_beams_that_dangle_are_taken_off():
     found = compare(whole, named, Cleaning(), explain=False)
     assert codes(found) == ["measurement-unused"]
     assert found.deviation.mean < 1e-9
+    assert found.joint_numbers.tolist() == [*range(2, 11)]
+    assert found.beam_numbers.tolist() == [*range(12)]
+    data = figures(found)
+    assert [row["joint"] for row in data["joints"]] == [*range(2, 11)]
+    assert data["worst_joint"] == found.deviation.worst + 2
+    write_joints(found, tmp_path / "joints.csv")
+    again = read_measurement(tmp_path / "joints.csv", 11)
+    assert again.numbers.tolist() == [*range(2, 11)]
+    assert compare(whole, again, Cleaning(), explain=False).deviation.mean < 1e-3
+
+
+@pytest.mark.parametrize("move", [[0, 0, 40.0], [7.0, 0, 0]])
+def test_one_joint_that_alone_is_off_is_named(move):
+    places = BASE.centres[-1] + 0.2 * np.random.default_rng(0).normal(size=(9, 3))
+    assert "joint-alone" not in codes(compared(JointPlaces(places, EVERY)))
+    places[5] += move
+    found = compared(JointPlaces(printed.moved(places, 1), EVERY))
+    (alone,) = (m for m in found.messages if m.code == "joint-alone")
+    assert alone.where == "joint 5"
+    off = float(alone.message.split("off by ")[1].split(" mm")[0])
+    assert off == pytest.approx(np.linalg.norm(move), abs=1.0)
+
+
+def test_the_flat_grid_itself_is_noticed():
+    flat = np.c_[BASE.grid.joints, np.zeros(9)]
+    found = compared(JointPlaces(printed.moved(flat, 2), EVERY))
+    assert "measurement-flat" in codes(found)
+    assert "measurement-flat" not in codes(compared(measured(noise=0.5, strain=0.8)))
+
+
+def test_two_joints_of_many_that_are_exchanged_are_named():
+    every = np.arange(100)
+    places = np.stack([20.0 * (every % 10), 20.0 * (every // 10), 0.1 * (every % 7) ** 2], axis=1)
+    wrong = every.copy()
+    wrong[[41, 42]] = 42, 41
+    (message,) = exchanged(places, places, wrong, 270.0, every + 100)
+    assert "as joints 141, 142 for 142, 141" in message.message
+    assert exchanged(places, places, every, 270.0, every) == []

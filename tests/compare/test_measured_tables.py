@@ -29,12 +29,57 @@ def rows(separator, point=".", names=True):
         rows(" ").replace("1.5", "1.5", 1),
         "joint,x,y,z,remark\n" + rows(",").replace("\n", ",well\n") + "9,,,\n",
         "z,y,x,no\n" + "\n".join(f"{z},{y},{x},J{j}" for j, (x, y, z) in enumerate(PLACES)),
+        "sep=;\nMeasured on Monday\njoint;x;y;z\n" + rows(";", ","),
+        "joint,x,y,z\n,mm,mm,mm\n" + rows(","),
+        "joint,X/mm,Y in mm,z_mm\n" + rows(","),
+        "Point no.,X-coordinate,Y coord.,pos z\n" + "P" + rows(",").replace("\n", "\nP")[:-1],
+        "joint,x,y,z,simulated_x,simulated_y,simulated_z\n" + rows(",").replace("\n", ",7,8,9\n"),
+        "joint,x,y,z\n"
+        + rows('","', ",")
+        .replace("\n", '"\n')
+        .replace('","', ',"', 1)
+        .replace("\n1", '\n"1')
+        .replace("\n2", '\n"2')
+        .replace("\n3", '\n"3'),
+        "joint,x,y,z\n" + rows(",").replace("-", "\u2212") + "8,-,-,-\n9,nan,nan,nan\n",
     ],
 )
 def test_tables_of_joints_are_read_however_they_are_written(text):
     table = read_table(text)
     assert table.places == pytest.approx(np.array(PLACES))
     assert table.numbers.tolist() == [0, 1, 2, 3]
+    assert {m.code for m in table.messages} <= {"measurement-empty"}
+
+
+@pytest.mark.parametrize("name", ["Gelenk", "n\u0153ud", "\u5173\u8282", ""])
+def test_a_column_of_different_whole_numbers_is_that_of_the_joints(name):
+    table = read_table(f"{name},x,y,z\n" + rows(","))
+    assert table.numbers.tolist() == [0, 1, 2, 3]
+    assert f'column 1 ("{name}")' in table.messages[0].message
+    alike = read_table(f"{name},x,y,z\n" + rows(",").replace("\n1,", "\n0,"))
+    assert alike.numbers is None
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "utf-16-le", "cp1252"])
+def test_tables_are_read_in_the_encodings_of_spreadsheets(tmp_path, encoding):
+    path = tmp_path / "joints.csv"
+    path.write_bytes(("joint;x;y;z;Gr\u00f6\u00dfe\r\n" + rows(";", ",")).encode(encoding))
+    assert read_measurement(path, 9).places == pytest.approx(np.array(PLACES))
+
+
+def test_clouds_may_have_numbers_intensities_and_a_count_above(tmp_path):
+    many = np.random.default_rng(0).normal(size=(300, 3)).round(4)
+    path = tmp_path / "points.pts"
+    texts = (
+        "300\n" + "".join(f"{x} {y} {z}\n" for x, y, z in many),
+        "".join(f"{x} {y} {z} 0.5\n" for x, y, z in many),
+        "id,x,y,z\n" + "".join(f"{k},{x},{y},{z}\n" for k, (x, y, z) in enumerate(many)),
+    )
+    for text in texts:
+        path.write_text(text)
+        cloud = read_measurement(path, 9)
+        assert isinstance(cloud, Scan)
+        assert cloud.points == pytest.approx(many)
 
 
 def test_a_byte_order_mark_comments_and_joints_without_a_place(tmp_path):
@@ -77,6 +122,10 @@ def test_points_without_numbers_are_joints_or_a_cloud(tmp_path):
         ("0,1\n1,2\n", "row 1 has 2 cells"),
         ("joint,x,y,z\n0,,,\n", "holds no joint with a place"),
         ("x,y,z [parsec]\n1,2,3\n", "is no unit of length"),
+        ("joint,x [mm],y [mm],z [cm]\n0,1,2,3\n", "row 1 names different units"),
+        ("x_start,y,z,x_end\n1,2,3,4\n", "row 1 names 2 columns x"),
+        ("0,1,2\n1,2,3\n2,3,4\n3,4,5\n", "joints with x and y, and no z"),
+        ("-1,1,2,3\n", 'row 1 names the joint "-1"'),
     ],
 )
 def test_what_is_wrong_with_a_table_is_said_with_its_row(text, words):
@@ -117,6 +166,9 @@ def test_a_header_says_the_unit_and_odd_sizes_are_refused():
     assert in_millimetres(table, 60.0)[0].places == pytest.approx(10 * np.array(PLACES))
     with pytest.raises(InputError, match="no unit makes sense"):
         in_millimetres(JointPlaces(np.array(PLACES) * 1e4), 60.0)
+    slip = np.array([*PLACES, [4000.0, 0, 0]])
+    with pytest.raises(InputError, match=r"without joint 7 at \(4000, 0, 0\) it is 58.* mm"):
+        in_millimetres(JointPlaces(slip, np.array([0, 1, 2, 3, 7])), 60.0)
 
 
 def test_files_that_are_no_measurement(tmp_path):
@@ -124,5 +176,8 @@ def test_files_that_are_no_measurement(tmp_path):
         read_measurement(tmp_path / "none.csv", 9)
     with pytest.raises(InputError, match="there is no such file"):
         read_measurement(tmp_path / "none.stl", 9)
+    (tmp_path / "binary.csv").write_bytes(b"\0\1\2" * 99)
+    with pytest.raises(InputError, match="is no text"):
+        read_measurement(tmp_path / "binary.csv", 9)
     with pytest.raises(InputError, match="the ending is not one of"):
         read_measurement(tmp_path / "grid.dwg", 9)

@@ -14,6 +14,7 @@ from simulearn.compare.clutter import without_table
 from simulearn.compare.deviation import curvature_of
 from simulearn.compare.fitting import fitted
 from simulearn.compare.normals import estimated
+from simulearn.compare.scanned import place_scan
 from simulearn.compare.simulated import stations_of, surface_of
 from simulearn.errors import InputError
 
@@ -97,6 +98,17 @@ def test_the_table_is_taken_off_and_a_flat_grid_is_none():
     assert [m.code for m in messages] == ["scan-table"]
     assert len(kept.points) == pytest.approx(len(flat), rel=0.05)
     assert without_table(Scan(flat), printed.grid(), 7.2)[1] == []
+
+
+def test_what_is_in_a_scan_besides_the_grid_is_said():
+    base = printed.shape()
+    points, _ = printed.surface(base, count=8000)
+    ball = np.random.default_rng(0).normal(size=(3000, 3))
+    ball *= 12 / np.linalg.norm(ball, axis=1, keepdims=True)
+    both = Scan(np.r_[points, ball + points.max(axis=0) + [30.0, 0, 0]])
+    found = place_scan(both, base, 7.2)
+    assert [m.code for m in found.messages] == ["scan-beyond"]
+    assert found.messages[0].message.startswith("27%")
 
 
 def test_scans_that_cannot_be_compared():

@@ -56,6 +56,12 @@ def test_a_cloud_keeps_its_normals_and_loses_what_is_not_finite(tmp_path):
         ("a.stl", b"\0" * 80 + b"\xff\xff\0\0" + b"\0" * 50, "is damaged|holds no surface"),
         ("a.ply", b"hello", "is damaged"),
         ("a.obj", b"# nothing\n", "is damaged|holds no surface"),
+        ("a.stl", b"glTF" + b"\0" * 200, "is a GLB file by its contents"),
+        ("a.stl", b"PK\3\4" + b"\0" * 200, "is a 3MF or ZIP file"),
+        ("a.stl", b"# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "is an OBJ file"),
+        ("a.obj", b"ply\nformat ascii 1.0\n", "is a PLY file"),
+        ("a.stl", BOX.export(file_type="stl")[:400], "has 12 triangles, and has 6"),
+        ("a.stl", BOX.export(file_type="stl_ascii")[:900].encode(), "is cut off"),
         ("a.stl", b"version https://git-lfs.github.com/spec/v1\n", "pointer of Git LFS"),
     ],
 )

@@ -8,10 +8,11 @@ import pytest
 from toys import alone, toy
 
 from simulearn.cli import inverse as cli
+from simulearn.cli.search_report import search_words
 from simulearn.collisions import Collision
 from simulearn.errors import InputError
 from simulearn.grid import Grid, grid_to_dict, make
-from simulearn.inverse import Space, optimize, rank, robust, search, task_from_dict
+from simulearn.inverse import Space, optimize, rank, robust, search, search_figures, task_from_dict
 from simulearn.inverse.keeping import ROBUST, identity, read_past, write_past
 from simulearn.inverse.probability import probability
 from simulearn.inverse.robust import robust_problem
@@ -148,6 +149,7 @@ def test_a_probability_is_counted_over_prints(fragile):
     without = probability(grid, goals, (None,), count=50)
     assert (without.goals, without.together, without.between) == ((None,), None, None)
     assert "within" not in without.words
+    assert (result.print, result.beam, result.beyond) == (0.17, 0.085, 0)
 
 
 def test_a_print_without_an_answer_meets_nothing(fragile, monkeypatch):
@@ -254,6 +256,10 @@ def test_a_robust_search_without_time_says_so(fragile):
     found = optimize(task_from_dict(fragile | {"robust": True}))
     assert "robust-not-begun" in {message.code for message in found.warnings}
     assert found.probability is found.nominal is not None
+    task = task_from_dict(fragile | {"robust": True})
+    lines = list(search_words(search_figures(task, found), found))
+    assert not any("no robust design was found" in line for line in lines)
+    assert any("strains differ by 17.0% from print to print and 8.5% from" in x for x in lines)
 
 
 def test_without_a_scatter_it_is_reported_or_refused(fragile, tmp_path):

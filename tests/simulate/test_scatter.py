@@ -138,6 +138,7 @@ def test_a_spread_is_kept_in_files_and_summaries(quick, tmp_path):
     [
         ({"joints": 3}, "scatter.joints: are not a list of objects with mean_mm, up_mm"),
         ({"joints": []}, "scatter.joints: are not"),
+        ({"groups": ["many"]}, "scatter.groups: are not numbers of prints"),
         ({"prints": "many"}, "scatter.prints: is missing or of the wrong kind"),
         ({"print": 2.0}, "scatter.print: and beam are not from 0 to 0.5"),
     ],
@@ -149,6 +150,26 @@ def test_a_wrong_block_is_named(quick, tmp_path, change, says):
     (tmp_path / "a.json").write_text(json.dumps(data))
     with pytest.raises(InputError, match=says):
         read_json(tmp_path / "a.json")
+
+
+def test_prints_that_come_to_two_shapes_are_said_to(monkeypatch, tmp_path):
+    def snapping(grid, materials, factors=None):
+        prints = pretended(grid, materials, factors)
+        high = np.array([m.shrinkage.active for m in materials]) > 1.1 * PLA.shrinkage.active
+        prints.joints[high, :, :, 2] *= -1
+        return prints
+
+    answer(monkeypatch, snapping)
+    result = scattered(synthetic.result(), 60)
+    high = int((strains(draw_prints(PLA, 12, 60)) > 1.1 * PLA.shrinkage.active).sum())
+    assert result.scatter.groups == (60 - high, high)
+    assert f"they come to 2 shapes ({60 - high} and {high} prints)" in result.scatter.words
+    assert any("prints come to 2 shapes" in text.get_text() for text in deformed(result).texts)
+    write_json(result, tmp_path / "a.json")
+    assert read_json(tmp_path / "a.json").scatter.groups == (60 - high, high)
+    answer(monkeypatch, pretended)
+    assert scattered(synthetic.result(), 60).scatter.groups == ()
+    assert scattered(synthetic.result(), 4).scatter.groups == ()
 
 
 def test_prints_without_an_answer_are_reported(monkeypatch):
@@ -238,7 +259,9 @@ def test_the_command_tells_and_writes_the_spread(run, quick, tmp_path):
         "-o",
         f"{tmp_path}/all/",
     )
-    assert run(*words)[0] == 0
+    code, out, _ = run(*words)
+    assert code == 0
+    assert "prints ±, mm" in out
     assert json.loads((tmp_path / "all" / "h.json").read_text())["scatter"]["drawn"] == 16
 
 

@@ -63,7 +63,7 @@ def compare(
             "-o",
             "--output",
             help="A file to write (repeat for more): .png .pdf .svg the picture; .json all "
-            "figures; .csv the measured joints, as a calibration takes them.",
+            "figures; .csv the measured joints, which compare reads again.",
         ),
     ] = None,
     as_json: Json = False,
@@ -123,7 +123,7 @@ def _print(found: "Comparison") -> None:
     out.print(
         f"{off.measured.sum()} of {len(off.joints)} joints measured; mean deviation "
         f"{off.mean:.2f} mm ({off.mean / size:.1%} of the dimension), worst {worst:.2f} mm "
-        f"({worst / size:.1%}, joint {off.worst})"
+        f"({worst / size:.1%}, joint {found.joint_numbers[off.worst]})"
     )
     out.print(_joints(found))
     out.print(_beams(found))
@@ -131,7 +131,7 @@ def _print(found: "Comparison") -> None:
     for line in qualified(found):
         out.print(escape(line))
     out.print(escape(verdict(found)))
-    out.print("[dim]`simulearn calibrate` fits a material to measured joints (-o joints.csv)[/]")
+    out.print("[dim]`simulearn calibrate` fits a material to printed strips[/]")
 
 
 def _joints(found: "Comparison") -> Table:
@@ -140,11 +140,11 @@ def _joints(found: "Comparison") -> Table:
     worst_first = np.argsort(-np.nan_to_num(off.distances, nan=-1.0), kind="stable")
     for j in sorted(worst_first[:SHOWN].tolist()):
         if not off.measured[j]:
-            table.add_row(str(j), "", "", "", "")
+            table.add_row(str(found.joint_numbers[j]), "", "", "", "")
             continue
         x, y, z = off.moves[j]
         table.add_row(
-            str(j),
+            str(found.joint_numbers[j]),
             f"{off.distances[j]:.2f}",
             f"{100 * off.distances[j] / size:.1f}",
             f"{float(np.hypot(x, y)):.2f}",
@@ -163,7 +163,9 @@ def _beams(found: "Comparison") -> Table:
     worst_first = np.argsort(-np.nan_to_num(off.beams[:, 1], nan=-1.0), kind="stable")
     for b in sorted(worst_first[:SHOWN].tolist()):
         cells = [*off.beams[b], *(curls[b] if found.scanned else ())]
-        table.add_row(str(b), *("" if np.isnan(x) else f"{x:.2f}" for x in cells))
+        table.add_row(
+            str(found.beam_numbers[b]), *("" if np.isnan(x) else f"{x:.2f}" for x in cells)
+        )
     if len(off.beams) > SHOWN:
         table.caption = f"the {SHOWN} beams that are farthest off; files have all"
     return table

@@ -39,6 +39,7 @@ from simulearn.outputs import check_place
 if TYPE_CHECKING:
     from simulearn.inverse import Step, Task
 
+MOST, MOST_TIMES = 1e6, 2**31 - 1  # mm or s, and times, which a task may name
 WRITTEN = (
     *("best.json", "summary.json", "search.json", "history.csv", "error.png", "shape.png"),
     *("shape.3dm", "changing.gif", "answers.json", "answers.png", "answer-*.json"),
@@ -51,6 +52,7 @@ ToleranceOption = Annotated[
     float | None,
     typer.Option(
         min=1e-6,
+        max=MOST,
         metavar="MM",
         help="How far a print may be from goals that say nothing of it: with what probability it "
         "is nearer is reported.",
@@ -76,11 +78,17 @@ def optimize(
     ] = None,
     engine: EngineOption = None,
     model: ModelOption = None,
-    seconds: Annotated[float | None, typer.Option(min=0.01, help="Another limit, s.")] = None,
-    iterations: Annotated[int | None, typer.Option(min=1, help="Another limit.")] = None,
+    seconds: Annotated[
+        float | None, typer.Option(min=0.01, max=MOST, help="Another limit, s.")
+    ] = None,
+    iterations: Annotated[
+        int | None, typer.Option(min=1, max=MOST_TIMES, help="Another limit.")
+    ] = None,
     corrections: Annotated[
         int | None,
-        typer.Option(min=0, help="How often to go on from targets that FEA has corrected."),
+        typer.Option(
+            min=0, max=MOST_TIMES, help="How often to go on from targets that FEA has corrected."
+        ),
     ] = None,
     tolerance: ToleranceOption = None,
     robust: Annotated[

@@ -84,10 +84,14 @@ def _print_words(result: "SearchResult") -> Iterator[str]:
     if probability is None:
         return
     yield f"prints: [bold]{probability.words}[/]"
+    yield f"[dim]{probability.assumes}[/]"
     if before is not None and probability is before:
-        yield (
-            "[yellow]no robust design was found:[/] prints of the best one meet the goals as often"
-        )
+        begun = all(message.code != "robust-not-begun" for message in result.warnings)
+        if begun:  # else a warning says that none was looked for
+            yield (
+                "[yellow]no robust design was found:[/] prints of the best one meet the goals as "
+                "often"
+            )
     elif before is not None:
         yield f"of the best design without regard to prints: {before.words}"
     rows = zip(result.goals.names, probability.goals, probability.tolerances, strict=True)
@@ -212,7 +216,7 @@ def ranking_table(ranking: "Ranking", goals: bool) -> Table:
         table.caption_justify = "left"
         table.caption = (
             f"within the tolerances of all goals, of {of_prints.drawn} prints by "
-            f"{of_prints.engine}; {share_words(of_prints)} as it is"
+            f"{of_prints.engine}; {share_words(of_prints)} as it is\n{of_prints.assumes}"
         )
     table.add_column("moves, mm", justify="right")
     for k, one in enumerate(ranking.best, 1):

@@ -248,18 +248,26 @@ def _overview(rows: "dict[str, Outcome | InputError]") -> Table:
 
     table = Table(box=None, pad_edge=False)
     table.add_column("grid", overflow="fold")
-    for name in ("z lowest", "highest, mm", "bound, mm", "snaps", "time"):
+    of_prints = any(isinstance(row, Result) and row.scatter is not None for row in rows.values())
+    spread = ("prints ±, mm",) if of_prints else ()
+    for name in ("z lowest", "highest, mm", "bound, mm", *spread, "snaps", "time"):
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("")
     for name, row in rows.items():
         title = escape(Path(name).stem)
         if not isinstance(row, Result):
-            table.add_row(title, "", "", "", "", "", f"failed ({row.code})")
+            blank = [""] * (len(table.columns) - 2)
+            table.add_row(title, *blank, f"failed ({row.code})")
             continue
         numbers = summary(row)
         bound = "" if row.bound_mm is None else f"{row.bound_mm:.2f}"
         notes = [] if row.stable else ["unstable"]
         notes += ["collides"] if row.collisions else []
+        differ = [] if not of_prints else [""] if row.scatter is None else [
+            f"{row.scatter.overall:.2f}"
+        ]  # fmt: skip
+        if row.scatter is not None and row.scatter.groups:
+            notes.append(f"prints come to {len(row.scatter.groups)} shapes")
         count = len(row.warnings)
         notes += [f"{count} warning" + "s" * (count > 1)] if count else []
         table.add_row(
@@ -267,6 +275,7 @@ def _overview(rows: "dict[str, Outcome | InputError]") -> Table:
             f"{numbers['lowest_mm']:.1f}",
             f"{numbers['highest_mm']:.1f}",
             bound,
+            *differ,
             str(len(row.snaps) or ""),
             _seconds(row.seconds),
             ", ".join(notes),

@@ -8,9 +8,17 @@ import numpy as np
 
 from simulearn.compare.aligning import aligned, ambiguous, mirrored, rms, spread
 from simulearn.compare.deviation import Deviation, deviation_of
+from simulearn.compare.doubts import alone, exchanged, few, flat, plausible
 from simulearn.compare.explaining import Explanation, explanations, simulated_by
 from simulearn.compare.matching import matches
-from simulearn.compare.measurement import JointPlaces, Measurement, Numbers, Scan, size
+from simulearn.compare.measurement import (
+    Indices,
+    JointPlaces,
+    Measurement,
+    Numbers,
+    Scan,
+    size,
+)
 from simulearn.compare.scanned import place_scan
 from simulearn.compare.scatter import Scatter, scatter_of
 from simulearn.compare.simulated import stations_of
@@ -26,9 +34,6 @@ Progress = Callable[[int, int], None]
 
 FEWEST = 4  # joints: three lie on every grid with such distances
 FLAT = 0.05  # of the dimension, the least spread of joints across their line
-FAR = 0.12  # of the dimension, residual that a print hardly has
-OTHER = 0.35  # of the dimension, residual of another grid
-EXCHANGED = 3.0  # times as well the joints fit with other numbers
 STAGES = 6  # of a comparison: simulation, pose, four of the explanation
 
 
@@ -47,6 +52,8 @@ class Comparison:
         scanned: whether a scan was measured.
         points: (N, 3) points of the scan in the frame of the simulation, some of them.
         messages: what is to be known about measurement and pose.
+        joint_numbers, beam_numbers: (J,) and (B,) which joints and beams of the design those of
+            the simulated grid are, which has none that dangle.
     """
 
     result: Result
@@ -59,6 +66,8 @@ class Comparison:
     scanned: bool
     points: Numbers
     messages: tuple[Message, ...]
+    joint_numbers: Indices
+    beam_numbers: Indices
 
 
 def compare(
@@ -110,6 +119,8 @@ def compare(
     else:
         joints, more = _placed(measured, simulated, grid, result)
         messages += more
+    stay = kept(grid.beams, len(grid.joints))
+    names, beam_names = (np.flatnonzero(some) for some in stay)
     progress(2, STAGES)
     many = len(simulated)
     deviation = deviation_of(
@@ -124,8 +135,12 @@ def compare(
     )
     seen = deviation.measured
     residual = rms(joints[seen], simulated[seen])
-    messages += _plausible(residual, result.grid, scanned, messages)
-    messages += _missing(deviation, scanned)
+    here = joints[seen], simulated[seen]
+    if not scanned and not any(m.code == "joints-exchanged" for m in messages):
+        messages += alone(*here, result.grid.dimension, names[seen])
+    messages += flat(*here, result.grid.joints[seen])
+    messages += plausible(residual, result.grid, scanned, messages)
+    messages += _missing(names[~seen], scanned)
 
     def later(done: int, total: int) -> None:
         progress(2 + done, STAGES)
@@ -141,7 +156,7 @@ def compare(
     progress(STAGES, STAGES)
     return Comparison(
         result, material, deviation, tuple(found_causes), scatter, residual, noise, scanned,
-        points, tuple(messages),
+        points, tuple(messages), names, beam_names,
     )  # fmt: skip
 
 
@@ -164,16 +179,9 @@ def _placed(
         messages.append(mirrored())
     joints = np.full_like(simulated, np.nan)
     joints[numbers] = pose(places)
-    residual = rms(joints[numbers], simulated[numbers])
-    if measured.numbers is not None and residual > FAR / 2 * result.grid.dimension:
-        other = matches(places, simulated)[0]
-        if other.residual * EXCHANGED < residual:
-            text = (
-                f"with other numbers the joints would fit within {other.residual:.2f} mm in place "
-                f"of {residual:.2f} mm: as joints {_few(other.joints)} for {_few(numbers)}; "
-                "look at how they were numbered"
-            )
-            messages.append(Message("joints-exchanged", "measurement", text))
+    if measured.numbers is not None:
+        names = np.flatnonzero(kept(grid.beams, len(grid.joints))[0])
+        messages += exchanged(joints[numbers], simulated, numbers, result.grid.dimension, names)
     return joints, messages
 
 
@@ -192,7 +200,7 @@ def _numbered(
     lost = numbers[~stay[numbers]]
     messages = []
     if len(lost):
-        text = f"joints {_few(lost)} have no beam that bears anything, and are not compared"
+        text = f"joints {few(lost)} have no beam that bears anything, and are not compared"
         messages.append(Message("measurement-unused", "measurement", text))
     here = stay[numbers]
     return (np.cumsum(stay) - 1)[numbers[here]], places[here], messages
@@ -210,32 +218,12 @@ def _enough(places: Numbers, grid: Grid) -> None:
         raise InputError(text, "measurement-line", "measurement")
 
 
-def _plausible(residual: float, grid: Grid, scanned: bool, before: list[Message]) -> list[Message]:
-    """Return a warning where a measurement hardly fits, or raise where it does not."""
-    share = residual / grid.dimension
-    if share < FAR:
-        return []
-    what = f"the joints are off by {residual:.1f} mm in the mean of squares, {share:.0%} of the"
-    other = "another grid" if scanned else "another grid, or have other numbers"
-    if share > OTHER:
-        text = f"{what} dimension; no print is so far off, so it must be {other}"
-        text += "".join(f"; {m.message}" for m in before if m.code == "joints-exchanged")
-        raise InputError(text, "measurement-other", "measurement")
-    return [Message("measurement-far", "measurement", f"{what} dimension; it may be {other}")]
-
-
-def _missing(deviation: Deviation, scanned: bool) -> list[Message]:
-    lost = np.flatnonzero(~deviation.measured)
+def _missing(lost: Indices, scanned: bool) -> list[Message]:
     if not len(lost):
         return []
     what = "were not found in the scan" if scanned else "were not measured"
-    text = f"joints {_few(lost)} {what}, and are left out"
+    text = f"joints {few(lost)} {what}, and are left out"
     return [Message("joints-missing", "measurement", text)]
-
-
-def _few(numbers: np.ndarray, most: int = 12) -> str:
-    words = [str(n) for n in numbers[:most].tolist()]
-    return ", ".join(words) + (", ..." if len(numbers) > most else "")
 
 
 def _nothing(done: int, total: int) -> None:

@@ -6,8 +6,9 @@ from pathlib import Path
 from simulearn.compare.measurement import Measurement
 from simulearn.compare.scans import FORMATS, of_points, read_scan
 from simulearn.compare.tables import read_table
+from simulearn.drawings.text import decoded
 from simulearn.errors import InputError
-from simulearn.files import read_text
+from simulearn.surfaces.meshfile import contents
 
 TABLES = (".csv", ".tsv", ".txt", ".xyz", ".asc", ".pts")
 LEAST_CLOUD = 20  # times as many points as joints are a cloud
@@ -18,7 +19,7 @@ def read_measurement(path: Path | str, joints: int) -> Measurement:
 
     Args:
         path: a table (.csv, .tsv, .txt, .xyz, .asc, .pts), or a scan (.stl, .ply, .obj).
-        joints: of the grid; a table of many more points without names is a cloud.
+        joints: of the grid; a table of many more points is a cloud, with numbers or without.
 
     Raises:
         InputError: the file cannot be read, or is no measurement; the message names the place.
@@ -32,13 +33,13 @@ def read_measurement(path: Path | str, joints: int) -> Measurement:
         raise InputError(
             f"{path}: the ending is not one of {known}", "measurement-format", str(path)
         )
-    text = read_text(path)
+    data = contents(path, "measurement")
     try:
-        table = read_table(text)
+        table = read_table(_text(data))
     except InputError as error:
         raise InputError(f"{path}: {error}", error.code, error.where) from error
     count = len(table.places)
-    if table.numbers is not None or count <= joints:
+    if count < LEAST_CLOUD * joints and (table.numbers is not None or count <= joints):
         return table
     if count < LEAST_CLOUD * joints:
         raise InputError(
@@ -48,3 +49,11 @@ def read_measurement(path: Path | str, joints: int) -> Measurement:
             str(path),
         )
     return replace(of_points(table.places), unit=table.unit)
+
+
+def _text(data: bytes) -> str:
+    try:
+        return decoded(data)
+    except InputError as error:
+        text = "is no text; a table of joints is text, such as a spreadsheet saves as .csv"
+        raise InputError(text, "measurement-table", "measurement") from error

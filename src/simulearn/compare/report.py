@@ -1,4 +1,4 @@
-"""A comparison in numbers and in words, and as the table of joints that a calibration takes."""
+"""A comparison in numbers and in words, and as a table of joints, which is read again."""
 
 import csv
 from pathlib import Path
@@ -27,7 +27,7 @@ def figures(comparison: Comparison) -> dict[str, Any]:
     size, worst = result.grid.dimension, comparison.deviation.worst
     joints = [
         {
-            "joint": j,
+            "joint": int(comparison.joint_numbers[j]),
             "measured_mm": _numbers(off.joints[j]),
             "simulated_mm": _numbers(off.simulated[j]),
             "deviation_mm": _number(off.distances[j]),
@@ -38,7 +38,7 @@ def figures(comparison: Comparison) -> dict[str, Any]:
     ]
     beams = [
         {
-            "beam": b,
+            "beam": int(comparison.beam_numbers[b]),
             "mean_mm": _number(off.beams[b, 0]),
             "largest_mm": _number(off.beams[b, 1]),
             "curvature_deg_mm": _number(np.degrees(off.curvature[b, 0])),
@@ -56,7 +56,7 @@ def figures(comparison: Comparison) -> dict[str, Any]:
         "mean_percent": _number(100 * off.mean / size),
         "worst_mm": _number(off.distances[worst]),
         "worst_percent": _number(100 * off.distances[worst] / size),
-        "worst_joint": worst,
+        "worst_joint": int(comparison.joint_numbers[worst]),
         "residual_mm": _number(comparison.residual),
         "noise_mm": None if comparison.noise is None else _number(comparison.noise),
         "scatter_mm": _number(comparison.scatter.mm),
@@ -167,7 +167,7 @@ def write_joints(comparison: Comparison, path: Path | str) -> None:
         table.writerow(COLUMNS)
         for j in np.flatnonzero(off.measured).tolist():
             places = [*off.joints[j], *off.simulated[j], off.distances[j]]
-            table.writerow([j, *(f"{x + 0.0:.4f}" for x in places)])
+            table.writerow([comparison.joint_numbers[j], *(f"{x + 0.0:.4f}" for x in places)])
 
 
 def _number(x: float | np.floating[Any]) -> float | None:

@@ -20,6 +20,8 @@ SHARE = 0.4  # of the joints that must be found
 TRIED = 4  # poses whose joints are fitted
 DOUBTFUL = 0.02  # of the dimension, residual from which a scan may be mirrored
 EQUAL, FLOOR = 1.1, 0.1  # times and mm: residuals that are as good
+REACH = 10.0  # mm, from the middle of a bar to what belongs to it, with some room
+BEYOND = 0.1  # of the points that belong to nothing that was found
 SHOWN = 20_000  # points kept for pictures
 
 
@@ -107,6 +109,7 @@ def place_scan(
         messages.append(ambiguous(len(as_good), "poses"))
     if best.pose.mirrored:
         messages.append(mirrored())
+    messages += _beyond(best, scan, stations)
     places = best.found.places.copy()
     places[~best.found.seen] = np.nan
     step = max(1, len(scan.points) // SHOWN)
@@ -137,6 +140,21 @@ def _laid(
     )
     residual = rms(found.places[:many][seen], simulated)
     return _Laid(better.after(pose), found, residual, int((~found.seen).sum()))
+
+
+def _beyond(best: _Laid, scan: Scan, stations: Stations) -> list[Message]:
+    """Return a warning where much of a scan lies at no joint and no beam that was found."""
+    apart = stations.centres[stations.links]
+    reach = 0.75 * float(np.linalg.norm(apart[:, 1] - apart[:, 0], axis=1).max()) + REACH
+    away, _ = KDTree(best.found.places[best.found.seen]).query(best.pose(scan.points))
+    share = float((away > reach).mean())
+    if share < BEYOND:
+        return []
+    text = (
+        f"{share:.0%} of the points lie at no joint and no beam that was found; it may be another "
+        "grid, or there is something besides it in the scan"
+    )
+    return [Message("scan-beyond", "measurement", text)]
 
 
 def _quality(one: _Laid) -> tuple[float, float]:

@@ -2,13 +2,16 @@
 
 from math import log
 
-from simulearn.compare.measurement import Measurement
+import numpy as np
+
+from simulearn.compare.measurement import JointPlaces, Measurement, size
 from simulearn.drawings.units import LENGTHS, unit_named
 from simulearn.errors import InputError, Message
 
 GUESSES = ("mm", "cm", "in", "m")
 # A measurement is so many times as large as the simulated grid: parts of it, or with its table.
 LIKELY = (0.3, 6.0)
+FEWEST = 5  # joints, of which one may be wrong
 
 
 def in_millimetres(
@@ -33,9 +36,23 @@ def in_millimetres(
         return measured.scaled(1.0), []
     best = min(GUESSES, key=lambda name: abs(log(max(times, 1e-12) * LENGTHS[name])))
     mm = LENGTHS[best]
-    size = f"it is {measured.extent:.3g} across, and the simulated grid {expected:.3g} mm"
+    sizes = f"it is {measured.extent:.3g} across, and the simulated grid {expected:.3g} mm"
     if not LIKELY[0] <= times * mm <= LIKELY[1]:
-        text = f"{size}; no unit makes sense of that, so it may be another grid"
+        text = f"{sizes}; no unit makes sense of that, so it may be another grid"
+        text += _but_for_one(measured, expected)
         raise InputError(text, "measurement-size", "measurement")
-    text = f'{size}; so its unit is taken to be "{best}"'
+    text = f'{sizes}; so its unit is taken to be "{best}"'
     return measured.scaled(mm), [Message("measurement-unit", "measurement", text)]
+
+
+def _but_for_one(measured: Measurement, expected: float) -> str:
+    """Return which joint alone makes a measurement too large, in words; "" if none does."""
+    if not isinstance(measured, JointPlaces) or len(measured.places) < FEWEST:
+        return ""
+    for k, place in enumerate(measured.places):
+        across = size(np.delete(measured.places, k, axis=0))
+        if LIKELY[0] <= across / expected <= LIKELY[1]:
+            which = "a joint" if measured.numbers is None else f"joint {measured.numbers[k]}"
+            x, y, z = place
+            return f"; without {which} at ({x:g}, {y:g}, {z:g}) it is {across:.3g} mm: look at that"
+    return ""

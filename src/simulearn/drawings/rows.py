@@ -62,7 +62,8 @@ def rows_of(text: str, separator: str) -> Iterator[Row]:
 
 def value_in(cell: str, comma: bool) -> float | None:
     """Return the number in a cell, also one that is not finite; None if it is none."""
-    text = cell.replace(",", ".") if comma and cell.count(",") == 1 and "." not in cell else cell
+    text = cell.replace("\u2212", "-")  # the minus sign of typesetters
+    text = text.replace(",", ".") if comma and text.count(",") == 1 and "." not in text else text
     try:
         return float(text) if "_" not in text else None
     except ValueError:

@@ -17,7 +17,13 @@ from simulearn.grid import Grid
 from simulearn.inverse.goals import Goals
 from simulearn.material import load_material
 from simulearn.simulate import Progress, Simulator
-from simulearn.simulate.scatter import Draw, draw_prints, prints_source, simulate_prints
+from simulearn.simulate.scatter import (
+    Draw,
+    beyond_learnt,
+    draw_prints,
+    prints_source,
+    simulate_prints,
+)
 from simulearn.simulate.source import Source
 
 Array = NDArray[np.float64]
@@ -39,6 +45,10 @@ class Probability:
         between: what `together` would be of very many prints, with 95 % confidence.
         error_mm: mean error of the prints.
         error_90_mm: that nine of ten prints stay below.
+        print, beam: relative standard deviations of the strains that were assumed, from print to
+            print and from beam to beam of one.
+        beyond: how many were drawn with a beam beyond what the model has learnt; their answers are
+            guesses.
     """
 
     drawn: int
@@ -50,6 +60,9 @@ class Probability:
     between: tuple[float, float] | None
     error_mm: float
     error_90_mm: float
+    print: float = 0.0
+    beam: float = 0.0
+    beyond: int = 0
 
     def better_than(self, other: "Probability") -> bool:
         """Whether more prints meet all goals; if as many do, whether they come closer."""
@@ -73,6 +86,17 @@ class Probability:
             f"{100 * self.together:.0f} % of {of} are within all tolerances "
             f"(of very many, {low} to {high} %): {error}"
         )
+
+    @property
+    def assumes(self) -> str:
+        """What all of it assumes, in one line."""
+        line = (
+            f"assumed: strains differ by {self.print:.1%} from print to print and {self.beam:.1%} "
+            "from beam to beam, and nothing else does"
+        )
+        if self.beyond:
+            line += f"; {self.beyond} prints have a beam beyond what the model has learnt"
+        return line
 
 
 def probability(
@@ -132,6 +156,9 @@ def probability(
         between=(float(interval.low), float(interval.high)) if some else None,
         error_mm=float(errors.mean()),
         error_90_mm=float(np.percentile(errors, 90)),
+        print=material.scatter.print,
+        beam=material.scatter.beam,
+        beyond=beyond_learnt(draw, source),
     )
 
 

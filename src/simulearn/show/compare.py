@@ -143,7 +143,8 @@ def _draw_measured(ax: Axes, comparison: Comparison, camera: Camera, numbers: bo
     if numbers:
         for j, (x, y) in enumerate(here):
             ax.annotate(
-                str(j), (x, y), xytext=(5, 4), textcoords="offset points", fontsize=6, zorder=7,
+                str(comparison.joint_numbers[j]), (x, y), xytext=(5, 4),
+                textcoords="offset points", fontsize=6, zorder=7,
                 path_effects=[withStroke(linewidth=1.4, foreground="white")],
             )  # fmt: skip
 
@@ -159,9 +160,10 @@ def _scale(fig: Figure, norm: Normalize, foot: float, height: float) -> None:
 def _words(comparison: Comparison, width: float) -> str:
     off, size = comparison.deviation, comparison.result.grid.dimension
     worst = float(off.distances[off.worst])
+    joint = comparison.joint_numbers[off.worst]
     first = (
         f"Mean deviation {off.mean:.2f} mm ({off.mean / size:.1%} of the dimension), worst "
-        f"{worst:.2f} mm ({worst / size:.1%}, joint {off.worst}); prints of one design differ by "
+        f"{worst:.2f} mm ({worst / size:.1%}, joint {joint}); prints of one design differ by "
         f"{comparison.scatter.mm:.1f} mm."
     )
     letters = int(WRAPPED * width / 7.2)

@@ -186,8 +186,10 @@ def qualified(result: Result) -> list[str]:
     spread = result.scatter
     if spread is not None:
         band = "" if spread.lines is None else "; purple band: 9 of 10"
+        sizes = " and ".join(map(str, spread.groups))
+        shapes = f"come to {len(spread.groups)} shapes ({sizes}) and " if spread.groups else ""
         words.append(
-            f"{spread.prints} prints differ by {spread.overall:.1f} mm "
+            f"{spread.prints} prints {shapes}differ by {spread.overall:.1f} mm "
             f"({spread.percent:.1f} %, standard deviation){band}"
         )
     if result.collisions:

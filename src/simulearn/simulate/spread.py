@@ -46,6 +46,8 @@ class Spread:
         overall: mean over all joints but the fixed one of the standard deviation in space.
         lines: (T, B, 3, 3) centres of the beams' sections in each print; None in a spread that was
             read from a file.
+        groups: how many prints come to each of several shapes with nothing between; () if all
+            come to one that varies.
     """
 
     scatter: Scatter
@@ -63,6 +65,7 @@ class Spread:
     overall: float
     lines: Numbers | None = field(default=None, repr=False)
     beyond: int = 0
+    groups: tuple[int, ...] = ()
 
     @property
     def percent(self) -> float:
@@ -80,6 +83,11 @@ class Spread:
         )
         if self.beyond:
             line += f"; {self.beyond} have a beam beyond what the model has learnt"
+        if self.groups:
+            line += (
+                f"; they come to {len(self.groups)} shapes ({' and '.join(map(str, self.groups))} "
+                "prints) with none between, as where a part of them snaps: the mean is none of them"
+            )
         return line
 
     @classmethod
@@ -88,6 +96,8 @@ class Spread:
         engine: str, beyond: int = 0,
     ) -> Spread:  # fmt: skip
         """Return the spread of prints that all have an answer; see the attributes."""
+        from simulearn.simulate.groups import groups_of  # reading a file does without
+
         centres = prints.centres
         mean = centres.mean(axis=0)
         away = centres - mean
@@ -109,6 +119,7 @@ class Spread:
             overall=float(np.sqrt(variance.sum(axis=1))[others].mean()),
             lines=prints.sections.mean(axis=3),
             beyond=beyond,
+            groups=groups_of(centres, grid.dimension),
         )
 
 
@@ -127,6 +138,7 @@ def spread_to_dict(spread: Spread) -> dict[str, Any]:
         "drawn": spread.drawn,
         "prints": spread.prints,
         "beyond": spread.beyond,
+        "groups": list(spread.groups),
         "overall_mm": round(spread.overall, DIGITS),
         "overall_percent": round(spread.percent, DIGITS),
         "joints": [
@@ -156,13 +168,15 @@ def spread_from_dict(data: Any, grid: Grid) -> Spread:
     shapes = [(len(grid.joints), *shape) for shape in _COLUMNS.values()]
     if [a.shape for a in columns] != shapes or not all(np.isfinite(a).all() for a in columns):
         raise wrong("joints", f"are not numbers for each of this grid's {len(grid.joints)} joints")
-    data = {"beyond": 0, **data}  # which files of earlier versions do not hold
+    data = {"beyond": 0, "groups": [], **data}  # which files of earlier versions do not hold
     kinds: dict[str, Any] = {"law": str, "engine": str, "seed": int, "drawn": int, "prints": int,
              "beyond": int, "print": float | int, "beam": float | int,
-             "overall_mm": float | int}  # fmt: skip
+             "overall_mm": float | int, "groups": list}  # fmt: skip
     for key, kind in kinds.items():
         if isinstance(data.get(key), bool) or not isinstance(data.get(key), kind):
             raise wrong(key, "is missing or of the wrong kind")
+    if not all(isinstance(size, int) for size in data["groups"]):
+        raise wrong("groups", "are not numbers of prints")
     try:
         scatter = Scatter(print=data["print"], beam=data["beam"])
     except ValueError as error:
@@ -183,4 +197,5 @@ def spread_from_dict(data: Any, grid: Grid) -> Spread:
         plane_90=plane_90,
         overall=float(data["overall_mm"]),
         beyond=data["beyond"],
+        groups=tuple(data["groups"]),
     )

@@ -197,6 +197,13 @@ class SpreadAnswer(_Answer):
     engine: str
     drawn: int
     prints: int
+    beyond: Annotated[
+        int, Field(description="drawn with a beam beyond what the model has learnt; guesses")
+    ]
+    groups: Annotated[
+        list[int],
+        Field(description="prints of each of several shapes with none between; none if it is one"),
+    ]
     overall_mm: float
     overall_percent: float
     joints: list[JointSpread]

@@ -12,6 +12,18 @@ from simulearn.files import MOST_BYTES
 
 FROM_ZERO = re.compile(rb"^f(?:[ \t]+[^\s]+)*?[ \t]+0(?:[/\s]|$)", re.MULTILINE)
 FORMATS = {".stl": "stl", ".ply": "ply", ".obj": "obj"}  # without a unit
+# How files begin, which may be called by the wrong ending.
+SIGNS = {
+    b"ply\n": "PLY",
+    b"ply\r": "PLY",
+    b"glTF": "GLB",
+    b"PK\x03\x04": "3MF or ZIP",
+    b"ISO-10303": "STEP",
+    b"3D Geometry": "Rhino",
+    b"\x89PNG": "PNG",
+    b"%PDF": "PDF",
+}
+HEAD, TRIANGLE = 84, 50  # bytes of a binary STL: before the triangles, and of each
 
 
 def loaded(data: bytes, ending: str, name: str, code: str) -> Any:
@@ -32,6 +44,8 @@ def loaded(data: bytes, ending: str, name: str, code: str) -> Any:
         raise InputError(f"{name}: is a pointer of Git LFS and no {code}; `git lfs pull`", code)
     more: Any = {"skip_materials": True} if ending == "obj" else {}
     data = data.removeprefix(BOM_UTF8)  # Trimesh would take it for a part of the first line
+    if wrong := _wrong(data, ending):
+        raise InputError(f"{name}: {wrong}", code, name)
     if ending == "obj" and FROM_ZERO.search(data):  # Trimesh would take the last vertex
         raise InputError(f"{name}: a face has the vertex 0; OBJ counts from 1", code, name)
     try:
@@ -46,6 +60,23 @@ def loaded(data: bytes, ending: str, name: str, code: str) -> Any:
     if shape is None or len(getattr(shape, "vertices", ())) == 0:
         return None
     return shape
+
+
+def _wrong(data: bytes, ending: str) -> str:
+    """Return what is wrong with a file by its beginning and its length; "" if nothing is."""
+    kind = next((kind for sign, kind in SIGNS.items() if data.startswith(sign)), None)
+    if kind is not None and kind.casefold() != ending:
+        return f"is a {kind} file by its contents, and no {ending.upper()} file"
+    if ending != "stl" or not data:
+        return ""
+    if data[:5].lower() == b"solid" and b"facet" in data[:2000]:
+        return "" if b"endsolid" in data[-2000:].lower() else "is cut off: it has no endsolid"
+    if re.match(rb"(?:#[^\n]*\n|\s)*(?:mtllib|o|g|v|vt|vn)[ \t]", data[:2000]):
+        return "is an OBJ file by its contents, and no STL file"
+    count, held = int.from_bytes(data[80:HEAD], "little"), max(len(data) - HEAD, 0) // TRIANGLE
+    if data[:5].lower() != b"solid" and held < count:
+        return f"is damaged or cut off: it says that it has {count:,} triangles, and has {held:,}"
+    return ""
 
 
 def _joined(scene: Any) -> Any:

@@ -35,6 +35,12 @@ const fact = ([name, text, digest]) => [
   h("dd", [text, digest && h("code", { title: digest }, digest.slice(0, 12))]),
 ];
 
+/** Return how far prints differ, and to how many shapes they come. */
+function differing({ overall_mm: overall, overall_percent: percent, prints, groups }) {
+  const far = t("share.differ", { mm: number(overall), percent: number(percent), prints });
+  return groups.length > 1 ? `${far}; ${t("share.groups", { count: groups.length, sizes: groups.join(" + ") })}` : far;
+}
+
 /** Return [key, text, digest] of each fact. */
 function facts(result) {
   const { engine, model, material, bound_mm: bound, stable, snaps, seconds, scatter } = result;
@@ -52,9 +58,7 @@ function facts(result) {
     ["balance", t(stable ? "share.stable" : "share.unstable")],
     ["snaps", percents.join(", ") || t("share.none")],
     ["range", t("share.between", { low: number(result.lowest_mm), high: number(result.highest_mm) })],
-    ...(scatter ? [["scatter", t("share.differ", {
-      mm: number(scatter.overall_mm), percent: number(scatter.overall_percent), prints: scatter.prints,
-    })]] : []),
+    ...(scatter ? [["scatter", differing(scatter)]] : []),
     ["time", t("share.seconds", { s: number(seconds, seconds < 1 ? 3 : 1) })],
   ];
 }

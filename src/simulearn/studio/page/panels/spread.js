@@ -25,6 +25,10 @@ function found(result) {
       [t("panels.spreadWidest", { k }), t("panels.spreadRange", { low: mm(low), high: mm(high) })],
       [t("panels.spreadPrints"), number(scatter.prints)],
     ]),
+    scatter.groups.length > 1 && note("warning", t("panels.spreadGroups", {
+      count: scatter.groups.length, sizes: scatter.groups.join(" + "),
+    })),
+    scatter.beyond > 0 && note("info", t("panels.spreadBeyond", { count: number(scatter.beyond) })),
     h("p", { class: "note" }, t("panels.spreadNote")),
   ];
 }
