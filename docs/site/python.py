@@ -39,7 +39,7 @@ PAGES: dict[str, str | list[str]] = {
         "simulearn.learn.common.bundle.bundle_of",
         "simulearn.learn.common.bundle.Bundle",
         "simulearn.learn.common.bundle.Card",
-        "simulearn.learn.common.bundle.save_bundle",
+        "simulearn.learn.common.saving.save_bundle",
         "simulearn.learn.common.model.Model",
         "simulearn.learn.common.model.Designs",
         "simulearn.learn.common.model.Frames",

@@ -197,6 +197,29 @@ def test_an_estimate_is_fitted_anew(config, fitted, tmp_path):
         new_bound(bundle_of("paper"), config, tmp_path)
 
 
+def test_a_set_of_ones_own_is_learnt_from_alone(sample_file, tmp_path):
+    file = tmp_path / "own.toml"
+    head = ['name = "own"', 'kind = "beams"', 'more = ["none.h5"]']
+    head += [f'{key} = "none.h5"' for key in ("data", "calibration", "unfamiliar", "fine")]
+    file.write_text("\n".join([*head, "[law]", "updates = 10", "batch = 4"]), "utf-8")
+    result = CliRunner().invoke(
+        app, ["train", str(file), "--data", str(sample_file), "-o", str(tmp_path / "run")]
+    )
+    assert result.exit_code == 0, result.output
+    assert "too few for an error estimate" in result.output
+    made = bundle_of(tmp_path / "run" / "model")
+    assert made.card.training["calibration"] is None
+    assert made.model.bound is None
+    again = CliRunner().invoke(app, ["train", str(file), "-o", str(tmp_path / "other")])
+    assert "none.h5: there is no such data set" in str(again.exception)
+
+
+def test_a_set_of_ones_own_keeps_a_fifth_aside(config):
+    large = config.model_copy(update={"validation": 200})
+    assert [large.of_own("x.h5", n).validation for n in (3, 60, 5000)] == [1, 12, 200]
+    assert large.of_own("x.h5", 60).calibration is None
+
+
 def test_outside_the_ranges_the_bound_grows(fitted):
     bound = fitted[0].model.bound
     low, high = 4.0 * bound.ranges[:, 0]  # in thicknesses of PLA's section

@@ -35,7 +35,10 @@ def train(
         typer.Option("-o", "--output", help="The folder of the run; runs/NAME if not given."),
     ] = None,
     data: Annotated[
-        Path | None, typer.Option(help="A packed data set, other than the file says.")
+        Path | None,
+        typer.Option(
+            help="A packed data set to learn from alone, in place of all that CONFIG names."
+        ),
     ] = None,
     search: Annotated[
         int | None,
@@ -62,10 +65,11 @@ def train(
     suffix = "-search" if search else "-bound" if bound_of else ""
     folder = output or Path("runs") / (wanted.name + suffix)
     if bound_of is not None:
-        if search or data or not isinstance(wanted, EquilibriumConfig):
-            raise InputError(
-                "--bound-of is for the kinds equilibrium and beams, without --search and --data"
-            )
+        if search or not isinstance(wanted, EquilibriumConfig):
+            raise InputError("--bound-of is for the kinds equilibrium and beams, without --search")
+        if data is not None:
+            update = {"calibration": str(data), "unfamiliar": None}
+            wanted = wanted.model_copy(update=update)
         _fit_bound(bound_of, wanted, folder, as_json)
         return
     source = data or Path(wanted.data)
@@ -76,6 +80,9 @@ def train(
         )
     folder_of(folder)
     trials = read_dataset(source, "train")
+    if data is not None and isinstance(wanted, EquilibriumConfig):
+        wanted = wanted.of_own(str(data), sum(int((~b.test).sum()) for b in trials.batches))
+        err.print(f"{escape(str(data))} alone is learnt from; {_aside(wanted.validation)}")
     if search:
         if isinstance(wanted, EquilibriumConfig):
             raise InputError("--search is for the kind paper; this configuration has no noise")
@@ -115,6 +122,15 @@ def train(
         return
     out.print(f"mean vertex error of the trials set aside {percent:.2f} % of dimension")
     out.print(f"wrote {escape(str(bundle.path))} and {escape(str(folder))}/loss.png, loss.csv")
+
+
+def _aside(count: int) -> str:
+    """Return what becomes of trials set aside from a set that alone is learnt from."""
+    from simulearn.learn.equilibrium.bound_fit import LEAST_TRIALS
+
+    if count < LEAST_TRIALS:
+        return f"{count} of its trials are set aside, too few for an error estimate"
+    return f"{count} of its trials are set aside, to which the error estimate is fitted"
 
 
 def _fit_bound(model: str, config: "EquilibriumConfig", folder: Path, as_json: bool) -> None:
@@ -233,7 +249,8 @@ def _table(figures: dict[str, Any]) -> Table:
         f"median {figures['median_percent']:.2f}, 97th percentile {figures['p97_percent']:.2f}, "
         f"worst {figures['worst_percent']:.2f} (trial {figures['worst_trial']})\n"
         f"mean {figures['mean_mm']:.2f} mm, 97th percentile {figures['p97_mm']:.2f}, "
-        f"worst {figures['worst_mm']:.2f}; the corners move by {figures['motion_mm']:.1f}",
+        f"worst {figures['worst_mm']:.2f}; the corners move by {figures['motion_mm']:.1f}"
+        f"{_bound_sentence(figures)}",
         title_justify="left",
     )
     names = ("frame", "mean %", "97 % %", "mean mm", "joints turned deg", "gap mm")
@@ -243,6 +260,16 @@ def _table(figures: dict[str, Any]) -> Table:
         values = [row[k] for k in row if k != "frame"]
         table.add_row(str(row["frame"]), *(f"{x:.3f}" for x in values))
     return table
+
+
+def _bound_sentence(figures: dict[str, Any]) -> str:
+    """Return how many answers are below the model's own bound, where it has one."""
+    if "below_bound_percent" not in figures:
+        return ""
+    return (
+        f"\n{figures['below_bound_percent']:.0f} % are below their 90 % bound, which is "
+        f"{figures['bound_over_error']:.1f} times the error in the median"
+    )
 
 
 def _parts_table(parts: dict[str, Any], title: str) -> Table:

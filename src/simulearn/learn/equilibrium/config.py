@@ -6,6 +6,8 @@ from pydantic import model_validator
 
 from simulearn.learn.common.config import Count, Data, Positive, RunConfig
 
+OWN_ASIDE = 5  # one of so many trials of a set of one's own is set aside
+
 
 class Stage(Data):
     """A part of the fitting of a model that solves for equilibrium.
@@ -30,7 +32,8 @@ class EquilibriumConfig(RunConfig):
 
     Attributes:
         kind: of the model; "beams" has no network.
-        calibration: the data set that the error estimate is fitted to, or none.
+        calibration: the data set that the error estimate is fitted to; where there is none, that
+            are the trials set aside.
         unfamiliar: a further one for it, of kinds of grids that the model does not learn, or none.
         more: further data sets to learn from, all by the same mesh as `data`.
         fine: a further data set to learn from, by the fine mesh, or none.
@@ -55,6 +58,19 @@ class EquilibriumConfig(RunConfig):
     network: Stage | None = None
     polish: Stage | None = None
     stress: Stage | None = None
+
+    def of_own(self, data: str, trials: int) -> "EquilibriumConfig":
+        """Return the run that learns from one data set alone, of so many trials to learn from."""
+        return self.model_copy(
+            update={
+                "data": data,
+                "validation": max(1, min(self.validation, trials // OWN_ASIDE)),
+                "more": (),
+                "fine": None,
+                "calibration": None,
+                "unfamiliar": None,
+            }
+        )
 
     @model_validator(mode="after")
     def _network_by_kind(self) -> "EquilibriumConfig":

@@ -3,7 +3,7 @@
 1. The law of sections, without a network.
 2. The first shapes of all trials by that law, from which the network takes its features.
 3. The network that corrects it, its polish, and the network for stresses.
-4. The error estimate, on data sets of its own.
+4. The error estimate, on data sets of its own, or else on the trials set aside.
 
 FOLDER/law.safetensors, network.safetensors, polish..., stress...   checkpoints
 """
@@ -22,7 +22,7 @@ from simulearn.errors import InputError
 from simulearn.learn.common.first_frame import designs_of
 from simulearn.learn.common.trials import fingerprint, split
 from simulearn.learn.equilibrium import corrector
-from simulearn.learn.equilibrium.bound_fit import error_bound_of, ranges_of
+from simulearn.learn.equilibrium.bound_fit import LEAST_TRIALS, error_bound_of, ranges_of
 from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
 from simulearn.learn.equilibrium.examples import examples_of
 from simulearn.learn.equilibrium.learnt import learnt_of
@@ -66,7 +66,7 @@ def train(
             or the one by the fine mesh is not there.
         ComputationError: a loss is not finite.
     """
-    batches, _ = split(config, data)
+    batches, aside = split(config, data)
     more = [read_dataset(path) for path in config.more]
     batches += [batch for one in more for batch in _for_learning(one)]
     sets, fine = [data, *more], list[Batch]()
@@ -127,6 +127,8 @@ def train(
     seen = [m for b in batches for m in (b.materials or (b.material,))]
     learnt = learnt_of(seen, max(b.mesh for b in batches))
     model = Equilibrium(as_numpy, material, learnt, sizes, None, config.kind)
+    if calibration is None and sum(map(len, aside)) >= LEAST_TRIALS:
+        calibration = aside, []
     if calibration is not None:
         seen_halves = [model.predict(designs_of(b), last=True).seen for b in batches]
         bound = error_bound_of(model, *calibration, seen_of(seen_halves), ranges_of(batches))
