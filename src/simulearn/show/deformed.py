@@ -190,7 +190,7 @@ def qualified(result: Result) -> list[str]:
         shapes = f"come to {len(spread.groups)} shapes ({sizes}) and " if spread.groups else ""
         words.append(
             f"{spread.prints} prints {shapes}differ by {spread.overall:.1f} mm "
-            f"({spread.percent:.1f} %, standard deviation){band}"
+            f"({spread.percent:.1f} %{'' if shapes else ', standard deviation'}){band}"
         )
     if result.collisions:
         count = len(result.collisions)
