@@ -113,8 +113,10 @@ def judged_trials(model: Equilibrium, batches: Sequence[Batch], seen: Seen) -> J
     rows: list[tuple[Any, ...]] = []
     for batch in batches:
         designs = designs_of(batch)
-        prediction, frames = model.predict(designs), model.rollout(designs)
-        answered = frames.converged & ~np.array([bool(x) for x in frames.snaps or ()])
+        prediction = model.predict(designs)
+        frames = model.frames(designs, prediction)
+        snaps = frames.snaps or ((),) * len(batch)  # None where they are not known
+        answered = frames.converged & ~np.array([bool(x) for x in snaps])
         columns = (
             signs_of_error(designs, prediction, seen),
             errors(frames, batch).vertex[:, -1],

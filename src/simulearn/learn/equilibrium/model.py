@@ -54,7 +54,10 @@ class Equilibrium:
 
     def rollout(self, designs: Designs) -> Frames:
         """Return the twelve frames of designs of one topology; see `learn.common.model.Model`."""
-        prediction = self.predict(designs)
+        return self.frames(designs, self.predict(designs))
+
+    def frames(self, designs: Designs, prediction: Prediction) -> Frames:
+        """Return the twelve frames of designs of one topology from their prediction."""
         bound = None if self.bound is None else self.bound.bound(designs, prediction, self.learnt)
         return Frames(
             np.asarray(prediction.joints),

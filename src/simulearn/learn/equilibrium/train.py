@@ -22,7 +22,7 @@ from simulearn.errors import InputError
 from simulearn.learn.common.first_frame import designs_of
 from simulearn.learn.common.trials import fingerprint, split
 from simulearn.learn.equilibrium import corrector
-from simulearn.learn.equilibrium.bound_fit import LEAST_TRIALS, error_bound_of, ranges_of
+from simulearn.learn.equilibrium.bound_fit import error_bound_of, ranges_of
 from simulearn.learn.equilibrium.config import EquilibriumConfig, Stage
 from simulearn.learn.equilibrium.examples import examples_of
 from simulearn.learn.equilibrium.learnt import learnt_of
@@ -127,13 +127,15 @@ def train(
     seen = [m for b in batches for m in (b.materials or (b.material,))]
     learnt = learnt_of(seen, max(b.mesh for b in batches))
     model = Equilibrium(as_numpy, material, learnt, sizes, None, config.kind)
-    if calibration is None and sum(map(len, aside)) >= LEAST_TRIALS:
-        calibration = aside, []
-    if calibration is not None:
-        seen_halves = [model.predict(designs_of(b), last=True).seen for b in batches]
-        bound = error_bound_of(model, *calibration, seen_of(seen_halves), ranges_of(batches))
-        model = replace(model, bound=bound)
-    return model, every
+    seen_halves = [model.predict(designs_of(b), last=True).seen for b in batches]
+    ours = seen_of(seen_halves), ranges_of(batches)
+    try:
+        bound = error_bound_of(model, *(calibration or (aside, [])), *ours)
+    except InputError:  # too few were set aside, or too few of them have an answer: no estimate
+        if calibration is not None:
+            raise
+        return model, every
+    return replace(model, bound=bound), every
 
 
 def with_new_bound(model: Equilibrium, config: EquilibriumConfig) -> Equilibrium:
