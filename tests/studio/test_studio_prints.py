@@ -2,7 +2,6 @@
 
 import json
 from io import BytesIO
-from time import perf_counter
 from urllib.parse import unquote
 from zipfile import ZipFile
 
@@ -175,9 +174,7 @@ def test_a_profile_is_read_and_its_printer_described(client):
     ],
 )
 def test_what_is_no_profile_says_where(client, text, where):
-    start = perf_counter()
     found = problem(client.post("/api/profile", {"profile": text}), 422)
-    assert perf_counter() - start < 5
     assert found["code"] in ("profile", "profile-too-large")
     assert found["where"] == where
     assert "profile" in found["detail"]
