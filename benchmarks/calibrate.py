@@ -18,7 +18,7 @@ from simulearn.fea.bar import bar, curvature
 from simulearn.files import replacing
 from simulearn.grid import Rules, draw_valid
 from simulearn.material import Material, load_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 
 NAME = "pla-hot-water"
 CREEP_SHARE = 1 / 20

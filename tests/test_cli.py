@@ -27,7 +27,7 @@ from simulearn import __version__, cli
 from simulearn.errors import ComputationError
 from simulearn.grid import grid_from_dict, grid_to_dict, library, make, read_grid
 from simulearn.material import read_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 from simulearn.outputs import FILMS, WRITERS
 from simulearn.schedule import Snap
 from simulearn.simulate import ENGINES, read_json, read_npz

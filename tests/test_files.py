@@ -232,7 +232,7 @@ def test_every_file_of_a_person_may_begin_with_a_byte_order_mark(tmp_path, encod
     from simulearn.fabricate import load_printer
     from simulearn.learn.config import read_config as read_training
     from simulearn.material import read_material
-    from simulearn.material.material import HERE
+    from simulearn.material.reading import HERE
 
     def saved(name, text):
         path = tmp_path / name

@@ -81,8 +81,8 @@ def test_bad_forms(old, new, says):
 @pytest.mark.parametrize(
     ("key", "value", "says"),
     [
-        ("chord", 4.1, "seems to be in cm; write 41"),
-        ("before", 4.72, "seems to be in cm; write 47.2"),
+        ("chord", 4.1, "seems to be in centimetres; write 41"),
+        ("before", 4.72, "seems to be in centimetres; write 47.2"),
         ("chord", 1.6, "seems to be in inches; write 40.64"),
         ("before", 1.86, "seems to be in inches"),
         ("before", 57.2, "is the strip another one?"),
@@ -114,7 +114,7 @@ def test_what_an_impossible_value_may_be(values, says):
 
 @pytest.mark.parametrize(
     ("key", "value", "says"),
-    [("thickness", 0.4, "in cm"), ("width", 0.28, "in inches"), ("width", 4.0, "another material")],
+    [("thickness", 0.4, "in centimetres"), ("width", 0.28, "in inches"), ("width", 4.0, "another material")],
 )
 def test_a_section_that_was_not_printed(key, value, says):
     form = FORM.model_copy(update={"section": CaliperSection(**{key: value})})

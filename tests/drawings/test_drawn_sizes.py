@@ -6,8 +6,9 @@ from messy import drawing, l_grid, same
 
 from simulearn.drawings.drawing import Curve, Line, Unit
 from simulearn.drawings.importing import Options, grid_of
-from simulearn.drawings.units import LENGTHS, UnitError, guessed, unit_named
+from simulearn.drawings.units import UnitError, guessed, unit_named
 from simulearn.errors import InputError
+from simulearn.units import LENGTHS
 
 
 def scaled(factor):

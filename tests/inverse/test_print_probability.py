@@ -18,7 +18,7 @@ from simulearn.inverse.probability import probability
 from simulearn.inverse.robust import robust_problem
 from simulearn.inverse.task import Free, task_to_dict
 from simulearn.material import Scatter, load_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 from simulearn.simulate import Result, scatter
 from simulearn.simulate.members import Prints
 from simulearn.simulate.source import Source

@@ -15,7 +15,7 @@ from simulearn.learn.common.bundle import bundle_of
 from simulearn.learn.common.saving import save_bundle
 from simulearn.learn.paper import search
 from simulearn.material import load_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 
 runner = CliRunner()
 

@@ -66,7 +66,7 @@ def test_only_the_learned_engine_takes_a_model(folder):
 
 def test_a_material_is_known_by_its_contents(learned, tmp_path):
     from simulearn.material import load_material
-    from simulearn.material.material import HERE
+    from simulearn.material.reading import HERE
 
     text = (HERE / "pla-hot-water.toml").read_text("utf-8")
     path = tmp_path / "other.toml"

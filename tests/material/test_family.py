@@ -8,7 +8,7 @@ from simulearn.fea import COARSE, FINE, simulate_grid
 from simulearn.fea.bar import bar, curvature
 from simulearn.grid import make
 from simulearn.material import Family, draw_member, load_material, member_of, read_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 
 PLA = load_material("pla-hot-water")
 

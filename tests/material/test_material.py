@@ -9,7 +9,8 @@ from simulearn.errors import InputError
 from simulearn.fea import simulate_grid
 from simulearn.grid import Grid, make
 from simulearn.material import Material, load_material, names
-from simulearn.material.material import HERE, Laid
+from simulearn.material.material import Laid
+from simulearn.material.reading import HERE
 
 PLA = (HERE / "pla-hot-water.toml").read_text(encoding="utf-8")
 
@@ -134,15 +135,15 @@ def test_an_edited_file_is_another_material(tmp_path):
 
 
 def test_a_shipped_material_is_read_once(monkeypatch):
-    from simulearn.material import material
+    from simulearn.material import reading
 
     def counted(path):
         paths.append(path)
         return original(path)
 
-    paths, original = [], material.read_material
-    monkeypatch.setattr(material, "read_material", counted)
-    material._shipped.cache_clear()
+    paths, original = [], reading.read_material
+    monkeypatch.setattr(reading, "read_material", counted)
+    reading._shipped.cache_clear()
     assert all(load_material("pla-hot-water") is load_material("pla-hot-water") for _ in range(50))
     assert len(paths) == 1
 

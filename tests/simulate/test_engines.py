@@ -15,7 +15,7 @@ import synthetic
 from simulearn.errors import CancelledError, ComputationError, InputError, Message, stop_if
 from simulearn.grid import Grid, grid_to_dict, make
 from simulearn.material import load_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 from simulearn.schedule import Snap
 from simulearn.simulate import (
     ENGINES,

@@ -12,7 +12,7 @@ import synthetic
 from simulearn.errors import CancelledError, ComputationError, InputError
 from simulearn.grid import make, write_grid
 from simulearn.material import Scatter, load_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 from simulearn.palette import BAND
 from simulearn.show import Camera, combined, deformed
 from simulearn.show.band import PLACES, bands

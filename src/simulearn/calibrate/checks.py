@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from simulearn.calibrate.form import MEASURED, Form, StripRecord
 from simulearn.errors import InputError, Message
 from simulearn.material import Section
+from simulearn.units import in_mm
 
 Numbers = NDArray[np.float64]
 TOO_LONG = 1.02  # of the printed length; a strip swells by less
 SIZE = 0.05  # by so much of it a strip may be printed longer or shorter
-UNITS = {"cm": 10.0, "inches": 25.4, "m": 1000.0}
+UNITS = in_mm("cm", "in", "m")
 OF_SECTION = 0.3  # by so much of it a caliper's value may differ from the base's section
 SLACK = 2.0  # mm
 SURE = 2.0  # mm, a rise of less may have either sign

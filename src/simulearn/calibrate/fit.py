@@ -36,7 +36,7 @@ from simulearn.calibrate.search import Search
 from simulearn.calibrate.strips import strips_of
 from simulearn.errors import Cancel, InputError, Message
 from simulearn.material import Material
-from simulearn.material.material import MOST_NAME
+from simulearn.material.reading import MOST_NAME
 
 Numbers = NDArray[np.float64]
 HELD = 0.9  # a number whose standard deviation the readings leave above this part is not determined

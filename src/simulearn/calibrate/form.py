@@ -27,12 +27,12 @@ from simulearn.errors import InputError
 from simulearn.files import is_there, read_text
 from simulearn.grid import Grid
 from simulearn.material.faults import reason
-from simulearn.material.material import is_name
+from simulearn.material.reading import is_name
+from simulearn.units import LENGTHS, length_named
 
 FORMAT: Literal["simulearn-calibration/1"] = "simulearn-calibration/1"
 MEASURED = ("before", "chord", "rise")  # what is measured of a strip, mm
-UNITS = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "inch": 25.4, "inches": 25.4}
-UNITS |= {'"': 25.4, "″": 25.4, "”": 25.4}
+UNITS = ("mm", "cm", "m", "in")  # in which a length may be written
 READING = re.compile(r"([+-]?(?:\d*\.?\d+|\d+\.))\s*(\D*)")
 MINUS = str.maketrans({"−": "-", "–": "-", "—": "-", ",": "."})
 # A key with nothing behind it, and a place between commas with nothing in it.
@@ -56,8 +56,10 @@ def number(value: Any) -> Any:
         if not text:
             return None
         match = READING.fullmatch(text)
-        if match is not None and (mm := UNITS.get(match[2].strip().lower())) is not None:
-            return float(f"{float(match[1]) * mm:.9g}")  # 1.6 in and not 40.640000000000001
+        unit = length_named(match[2] or "mm") if match is not None else None
+        if match is not None and unit in UNITS:
+            mm = float(match[1]) * LENGTHS[unit]
+            return float(f"{mm:.9g}")  # 1.6 in and not 40.640000000000001
     elif isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value):
         return float(value)
     raise ValueError(f'is {value!r}; write a number of mm, or "" where nothing was measured')

@@ -7,7 +7,7 @@ from simulearn.calibrate.form import MEASURED, Form, StripRecord
 from simulearn.calibrate.plate import KINDS, label
 from simulearn.files import path_from, replacing
 from simulearn.material import load_material
-from simulearn.material.material import is_name
+from simulearn.material.reading import is_name
 
 HEAD = """\
 # Calibration form. Fill in what stands between the quotes; what stays "" is not used.

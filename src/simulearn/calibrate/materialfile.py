@@ -20,7 +20,7 @@ from simulearn.fea.bar import bar, curvature
 from simulearn.files import read_text, replacing
 from simulearn.material import Material, read_material
 from simulearn.material.family import member_of
-from simulearn.material.material import HERE, is_name
+from simulearn.material.reading import HERE, is_name
 
 DIGITS = 5
 HEADER = re.compile(r"^\s*\[([\w.]+)\]")

@@ -110,7 +110,7 @@ def fit_(
     """Fit a material to the form's readings, and say how sure each of its numbers is."""
     from simulearn.calibrate import fit, read_form, write_material
     from simulearn.material import check_name, load_material
-    from simulearn.material.material import is_name
+    from simulearn.material.reading import is_name
 
     if output is not None:
         outputs.ending_of(output, (".toml",))

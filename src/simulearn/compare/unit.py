@@ -5,8 +5,9 @@ from math import log
 import numpy as np
 
 from simulearn.compare.measurement import JointPlaces, Measurement, size
-from simulearn.drawings.units import LENGTHS, unit_named
+from simulearn.drawings.units import unit_named
 from simulearn.errors import InputError, Message
+from simulearn.units import LENGTHS
 
 GUESSES = ("mm", "cm", "in", "m")
 # A measurement is so many times as large as the simulated grid: parts of it, or with its table.

@@ -3,7 +3,8 @@
 import numpy as np
 
 from simulearn.drawings.drawing import Line, Unit
-from simulearn.drawings.units import LENGTHS, odd
+from simulearn.drawings.units import odd
+from simulearn.units import LENGTHS
 
 _SURVEY_FOOT = 1200e3 / 3937  # mm; the definition of the United States' survey foot
 

@@ -1,44 +1,11 @@
-"""Units of drawings: their names, sizes that cannot be meant, and the unit that is likely meant."""
+"""Units of drawings: sizes that cannot be meant, and the unit that is likely meant."""
 
 from math import inf, log
 
 from simulearn.drawings.drawing import Unit
 from simulearn.errors import InputError
+from simulearn.units import LENGTHS, length_named
 
-INCH = 25.4
-# Lengths of units in mm, and their other names.
-LENGTHS = {
-    "mm": 1.0,
-    "cm": 10.0,
-    "dm": 100.0,
-    "m": 1000.0,
-    "km": 1e6,
-    "um": 1e-3,
-    "nm": 1e-6,
-    "in": INCH,
-    "mil": INCH / 1000,
-    "ft": 12 * INCH,
-    "yd": 36 * INCH,
-    "pt": INCH / 72,
-    "pc": INCH / 6,
-    "px": INCH / 96,
-}
-NAMES = {
-    "mm": ("millimeter", "millimetre"),
-    "cm": ("centimeter", "centimetre"),
-    "dm": ("decimeter", "decimetre"),
-    "m": ("meter", "metre"),
-    "km": ("kilometer", "kilometre"),
-    "um": ("µm", "μm", "micron", "micrometer", "micrometre"),
-    "nm": ("nanometer", "nanometre"),
-    "in": ("inch", "inche", '"'),
-    "mil": ("thou",),
-    "ft": ("foot", "feet", "'"),
-    "yd": ("yard",),
-    "pt": ("point",),
-    "pc": ("pica",),
-    "px": ("pixel",),
-}
 # Beams are usually this long; other lengths of the middle one are odd (mm).
 USUAL = (8.0, 400.0)
 # A unit is likely where the middle beam is so long, and most likely nearest to TYPICAL (mm).
@@ -72,10 +39,9 @@ def unit_named(name: str, source: str) -> Unit:
     Raises:
         InputError: there is no such unit.
     """
-    word = " ".join(name.split()).casefold()
-    for short, mm in LENGTHS.items():
-        if {word, word.removesuffix("s")} & {short, *NAMES[short]}:
-            return Unit(mm, short, source)
+    short = length_named(name)
+    if short is not None:
+        return Unit(LENGTHS[short], short, source)
     text = f'"{name[:40]}" is no unit of length; units are {", ".join(LENGTHS)}'
     raise InputError(text, "unit-name", "unit")
 

@@ -13,7 +13,8 @@ from simulearn.grid.arrays import KEYS as KEYS_OF_GRID
 from simulearn.grid.arrays import shown, whole
 from simulearn.grid.grid import Grid
 from simulearn.grid.structure import structure_errors
-from simulearn.material.material import Material, is_name, name_of
+from simulearn.material.material import Material
+from simulearn.material.reading import is_name, name_of
 
 SCHEMA = "simulearn.grid/1"
 MOST_BYTES = 2**24  # several times the largest grid that can be computed

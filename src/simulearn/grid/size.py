@@ -18,6 +18,7 @@ from simulearn.errors import Message
 from simulearn.grid.grid import Grid
 from simulearn.material import Material
 from simulearn.material.material import Section
+from simulearn.units import in_mm
 
 Numbers = NDArray[np.float64]
 
@@ -27,15 +28,9 @@ LANKY = 2.0  # times the usual limit of a beam: a grid whose beams are longer is
 USUAL = (15.0, 160.0)  # mm, of beams
 TYPICAL = 60.0  # mm, of beams
 UNITS = {  # mm
-    "metres": 1000.0,
-    "feet": 304.8,
-    "inches": 25.4,
-    "centimetres": 10.0,
-    "points": 25.4 / 72,
-    "pixels": 25.4 / 96,
+    **in_mm("m", "ft", "in", "cm", "pt", "px"),
     "tenths of a millimetre": 0.1,
-    "thousandths of an inch": 0.0254,
-    "micrometres": 0.001,
+    **in_mm("mil", "um"),
 }
 
 

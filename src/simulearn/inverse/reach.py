@@ -11,10 +11,11 @@ from simulearn.inverse.goals import Goals
 from simulearn.inverse.kinds import AtPoints, OnSet, Set
 from simulearn.inverse.vertex import Vertex
 from simulearn.surfaces import Curve, Surface
+from simulearn.units import in_mm
 
 SLACK = 1.1  # of the beams' length, which a target may be away; joints may move outwards
 LEAST = 0.3  # of the dimension; targets in the right unit hardly lie all nearer
-UNITS = {"metres": 1000.0, "inches": 25.4, "centimetres": 10.0}
+UNITS = in_mm("m", "in", "cm")
 # Of the dimension: a design that stays so far from its targets does not come near them, where
 # something speaks for it beforehand and where nothing does.
 FAR, VERY_FAR = 0.1, 0.5

@@ -8,12 +8,9 @@ from simulearn.material.material import (
     Material,
     Scatter,
     Section,
-    load_material,
-    name_of,
-    names,
-    read_material,
 )
 from simulearn.material.own import check_name, material_text, materials_of, own_material
+from simulearn.material.reading import load_material, name_of, names, read_material
 
 __all__ = [
     "ElasticData",

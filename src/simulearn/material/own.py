@@ -10,7 +10,8 @@ from typing import Any
 from simulearn.errors import InputError
 from simulearn.files import read_text
 from simulearn.material.faults import MOST_SHOWN, MaterialError
-from simulearn.material.material import HERE, NAMES, Material, may_be_named, names, parsed
+from simulearn.material.material import Material
+from simulearn.material.reading import HERE, NAMES, may_be_named, names, parsed
 
 MOST_MATERIALS = 16  # materials that anybody may send at once
 MOST_TEXT = 2**16  # characters of one

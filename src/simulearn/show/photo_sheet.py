@@ -23,8 +23,8 @@ from simulearn.calibrate.photo_sheet import (
 )
 from simulearn.extras import require
 from simulearn.show.style import INK
+from simulearn.units import INCH
 
-INCH = 25.4
 DARK_GREY = "#303030"  # of the dark sheet's inside; deep enough for white strips
 BLACK = "#000000"
 

@@ -16,7 +16,7 @@ from simulearn.grid.structure import FARTHEST, MOST_BEAMS, MOST_JOINTS
 from simulearn.inverse.goalfile import OBJECT, WORDS, CurveFile, Goal
 from simulearn.inverse.wanting import agree
 from simulearn.material import materials_of
-from simulearn.material.material import is_name
+from simulearn.material.reading import is_name
 from simulearn.studio.bodies import OwnMaterials
 from simulearn.studio.problems import place_of
 from simulearn.studio.surfacefile import MOST_TRIANGLES

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import svgelements
 
 from simulearn.drawings.svg.curves import Matrix
+from simulearn.units import INCH, LENGTHS
 
-INCH = 25.4
-PHYSICAL = {"mm": 1.0, "cm": 10.0, "in": INCH, "pt": INCH / 72, "pc": INCH / 6, "q": 0.25}
+PHYSICAL = {**{unit: LENGTHS[unit] for unit in ("mm", "cm", "in", "pt", "pc")}, "q": 0.25}
 _LENGTH = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*([a-z%]*)\s*", re.I)
 _ARGUMENT = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)([a-z%]*)", re.I)
 _FUNCTION = re.compile(r"\s*,?\s*(\w+)\s*\(([^()]*)\)")

@@ -8,7 +8,6 @@ from simulearn.drawings.drawing import Unit
 from simulearn.drawings.svg.curves import Matrix
 from simulearn.drawings.svg.lengths import (
     IDENTITY,
-    INCH,
     PHYSICAL,
     Viewport,
     after,
@@ -17,8 +16,9 @@ from simulearn.drawings.svg.lengths import (
     view_box,
 )
 from simulearn.drawings.svg.tree import INKSCAPE, SERIF, SODIPODI, Document
+from simulearn.units import INCH, LENGTHS
 
-_NAMES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": INCH, "pt": INCH / 72, "px": INCH / 96}
+_NAMES = ("mm", "cm", "m", "in", "pt", "px")
 
 
 @dataclass(frozen=True)
@@ -173,7 +173,7 @@ def _px(window: Viewport, text: str) -> float:
 def _unit(px: float, step: float, source: str) -> Unit:
     """Return the unit of which a px (mm) has `step`, with its name, where it has one."""
     length = px / step
-    for name, mm in (*_NAMES.items(), ("px", px)):
+    for name, mm in (*((name, LENGTHS[name]) for name in _NAMES), ("px", px)):
         if (wrong := abs(length / mm - 1.0)) < 1e-4:
             return Unit(mm if wrong < 1e-12 else length, name, source)
     return Unit(length, "unit", source)

@@ -25,7 +25,7 @@ from simulearn.files import read_text
 from simulearn.grid import TrainingRange
 from simulearn.learn.common.model import Model, builder, check_kind
 from simulearn.material import Identity, Material, load_material
-from simulearn.material.material import is_name
+from simulearn.material.reading import is_name
 
 if TYPE_CHECKING:  # reading a bundle needs none of it
     pass

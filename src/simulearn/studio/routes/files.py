@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from simulearn.drawings.importing import Options
 from simulearn.drawings.mending import MENDS
-from simulearn.drawings.units import LENGTHS, UnitError
+from simulearn.drawings.units import UnitError
 from simulearn.errors import Cancel
 from simulearn.grid import Grid, grid_from_dict
 from simulearn.grid.structure import FARTHEST
@@ -29,6 +29,7 @@ from simulearn.studio.problems import MessageBody, Problem
 from simulearn.studio.routes.designs import BUSY, check_fea, check_size
 from simulearn.studio.simulations import Simulations, engine_of
 from simulearn.studio.turns import Turns
+from simulearn.units import LENGTHS
 
 Place = Annotated[list[float], Field(min_length=2, max_length=2)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
