@@ -114,7 +114,11 @@ def test_what_an_impossible_value_may_be(values, says):
 
 @pytest.mark.parametrize(
     ("key", "value", "says"),
-    [("thickness", 0.4, "in centimetres"), ("width", 0.28, "in inches"), ("width", 4.0, "another material")],
+    [
+        ("thickness", 0.4, "in centimetres"),
+        ("width", 0.28, "in inches"),
+        ("width", 4.0, "another material"),
+    ],
 )
 def test_a_section_that_was_not_printed(key, value, says):
     form = FORM.model_copy(update={"section": CaliperSection(**{key: value})})

@@ -98,6 +98,34 @@ def test_a_checkpoint_of_another_run_is_refused(config, sample, fitted, folder):
         train(config, replace(sample, sha256="other"), folder)
 
 
+def test_a_run_goes_on_from_a_model(config, sample, fitted, tmp_path):
+    polish = {"polish": {"updates": 10, "batch": 4, "rate": 2e-3}, "stress": None}
+    further = config_of({**config.model_dump(), **polish}, "further")
+    bundle, rows, _ = run(further, sample, tmp_path, lambda *_: None, begin=fitted[0])
+    assert [row.stage for row in rows] == ["polish"]
+    before, after = fitted[0].model.to_arrays(), bundle.model.to_arrays()
+    same = {name for name in before if np.array_equal(before[name], after.get(name))}
+    parts = {name.partition(".")[0] for name in before if name not in same}
+    assert parts == {"network", "trust"}  # the law and the network for stresses stay
+    assert bundle.card.training["begin"]["weights"] == fitted[0].card.weights
+
+
+def test_what_a_run_cannot_go_on_from(config, sample, fitted, tmp_path):
+    model = fitted[0].model
+    polish = {"updates": 10}
+    further = config_of({**config.model_dump(), "polish": polish}, "further")
+    with pytest.raises(InputError, match="has no polish"):
+        train(config, sample, begin=model)
+    with pytest.raises(InputError, match="has no network"):
+        train(further, sample, begin=bundle_of("beams").model)
+    with pytest.raises(InputError, match=r"are \(64, 16, 2\), those of the run \(8, 2, 1\)"):
+        train(further, sample, begin=bundle_of("equilibrium").model)
+    with pytest.raises(InputError, match="only runs and models of the kind equilibrium"):
+        run(further, sample, tmp_path, lambda *_: None, begin=bundle_of("paper"))
+    both = ["train", "equilibrium", "--from", "equilibrium", "--bound-of", "equilibrium"]
+    assert "exclude each other" in str(CliRunner().invoke(app, both).exception)
+
+
 def test_a_network_belongs_to_its_kind(config):
     data = config.model_dump()
     with pytest.raises(InputError, match="kind beams has none"):

@@ -53,6 +53,12 @@ def train(
             help="Fit no more than the error estimate of a model anew, to the calibration sets.",
         ),
     ] = None,
+    begin: Annotated[
+        str | None,
+        typer.Option(
+            "--from", metavar="MODEL", help="Go on from a model, its networks alone, by the polish."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Train a model; the same command goes on where it was stopped."""
@@ -67,6 +73,8 @@ def train(
     if bound_of is not None:
         if search or not isinstance(wanted, EquilibriumConfig):
             raise InputError("--bound-of is for the kinds equilibrium and beams, without --search")
+        if begin is not None:
+            raise InputError("--from and --bound-of exclude each other")
         if data is not None:
             update = {"calibration": str(data), "unfamiliar": None}
             wanted = wanted.model_copy(update=update)
@@ -84,7 +92,7 @@ def train(
         wanted = wanted.of_own(str(data), sum(int((~b.test).sum()) for b in trials.batches))
         err.print(f"{escape(str(data))} alone is learnt from; {_aside(wanted.validation)}")
     if search:
-        if isinstance(wanted, EquilibriumConfig):
+        if isinstance(wanted, EquilibriumConfig) or begin is not None:
             raise InputError("--search is for the kind paper; this configuration has no noise")
         from simulearn.learn.paper.search import search as search_for
         from simulearn.show.learning import search_picture
@@ -99,8 +107,11 @@ def train(
             out.print(_best(figures))
             out.print(f"wrote {escape(str(folder))}/search.png, search.csv, search.json")
         return
+    from simulearn.learn.common.bundle import bundle_of
     from simulearn.learn.run import run
     from simulearn.show.learning import loss_picture, stages_picture
+
+    first = bundle_of(begin) if begin is not None else None
 
     picture: Callable[[Any, str], Any] = (
         stages_picture if isinstance(wanted, EquilibriumConfig) else loss_picture
@@ -112,7 +123,7 @@ def train(
 
     try:
         with _epochs(quiet=as_json) as show:
-            bundle, rows, percent = run(wanted, trials, folder, show, draw)
+            bundle, rows, percent = run(wanted, trials, folder, show, draw, first)
     except KeyboardInterrupt:
         err.print("stopped; what is finished is kept, and the same command goes on")
         raise

@@ -35,6 +35,7 @@ def run(
     folder: Path,
     progress: Progress,
     draw: Draw | None = None,
+    begin: Bundle | None = None,
 ) -> tuple[Bundle, Rows, float]:
     """Train a model in a folder, or go on with one.
 
@@ -44,11 +45,20 @@ def run(
         folder: of the run; it exists.
         progress: called after every update and every row of the loss curve.
         draw: draws the loss curve into a file.
+        begin: a model to go on from.
 
     Returns:
         The model, the loss curve, and the mean vertex error of the trials set aside, % of
         their dimension.
+
+    Raises:
+        InputError: the trials are too few, or the run cannot go on from that model.
     """
+    first: Equilibrium | None = None
+    if begin is not None:
+        if not isinstance(begin.model, Equilibrium) or not isinstance(config, EquilibriumConfig):
+            raise InputError("only runs and models of the kind equilibrium go on from a model")
+        first = begin.model
     rows: list[Any] = []
 
     def report(row: Any, done: int, total: int) -> None:
@@ -61,7 +71,7 @@ def run(
     every: Rows
     more: list[Dataset] = []
     if isinstance(config, EquilibriumConfig):
-        model, every = equilibrium.train(config, data, folder, report)
+        model, every = equilibrium.train(config, data, folder, report, first)
         percent = validate(model, split(config, data)[1])
         fine = () if config.fine is None else (config.fine,)
         more = [read_dataset(path, stress=False) for path in (*config.more, *fine)]
@@ -70,6 +80,8 @@ def run(
         percent = every[-1].validation_percent
     write_curve(every, folder, draw)
     training = config.model_dump(mode="json")
+    if begin is not None:
+        training["begin"] = {"name": begin.card.name, "weights": begin.card.weights}
     bundle = save_bundle(folder / "model", model, config.name, data, training, more=more)
     return bundle, every, percent
 

@@ -8,12 +8,14 @@
 FOLDER/law.safetensors, network.safetensors, polish..., stress...   checkpoints
 """
 
+import hashlib
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 
 from simulearn.compiled import double_precision
@@ -52,6 +54,7 @@ def train(
     data: Dataset,
     folder: Path | None = None,
     report: Report = no_report,
+    begin: Equilibrium | None = None,
 ) -> tuple[Equilibrium, list[StageRow]]:
     """Fit a model, or go on with one.
 
@@ -60,10 +63,11 @@ def train(
         data: to learn from, with stresses if the configuration has a stage for them.
         folder: for checkpoints; None keeps none.
         report: called with (row of the loss curve or None, updates done, updates in all).
+        begin: a model whose law and networks are gone on with: the polish comes first.
 
     Raises:
-        InputError: a checkpoint is of another run, the trials are too few, or the calibration set
-            or the one by the fine mesh is not there.
+        InputError: a checkpoint is of another run, the trials are too few, the calibration set
+            or the one by the fine mesh is not there, or the run cannot go on from `begin`.
         ComputationError: a loss is not finite.
     """
     batches, aside = split(config, data)
@@ -76,7 +80,10 @@ def train(
     calibration = _calibration(config)  # what is wrong with it is said before all the work
     material = batches[0].material
     identity = fingerprint(config, *sets)
-    stages = (config.law, config.network, config.polish, config.stress)
+    stages: tuple[Stage | None, ...] = (config.law, config.network, config.polish, config.stress)
+    if begin is not None:
+        identity = _identity_from(begin, config, identity)
+        stages = stages[2:]
     total = sum(stage.updates for stage in stages if stage is not None)
     every: list[StageRow] = []
     before = 0
@@ -92,12 +99,15 @@ def train(
         every.extend(keep.rows)
         return before + stage.updates
 
-    keep = keeper("law")
-    examples = examples_of(batches)
-    law = fit_law(examples, unfitted(), config.law, config.seed, keep)
-    law = jax.tree.map(np.asarray, law)
-    before = finished(config.law, keep)
     networks: dict[str, NetworkWeights] = {}
+    if begin is None:
+        keep = keeper("law")
+        examples = examples_of(batches)
+        law = fit_law(examples, unfitted(), config.law, config.seed, keep)
+        law = jax.tree.map(np.asarray, law)
+        before = finished(config.law, keep)
+    else:
+        law, networks = begin.parameters.law, _networks_of(begin)
     if config.network is not None or config.stress is not None:
         examples = examples_of(batches, law)
         for name, stage, heads, task in (
@@ -105,20 +115,20 @@ def train(
             ("polish", config.polish, CORRECTIONS, partial(fit_network, full=True)),
             ("stress", config.stress, STRESSES, fit_stress),
         ):
-            if stage is None:
+            if stage is None or (begin is not None and name == "network"):
                 continue
             if name != "network" and fine:  # then it learns what the fine mesh says differently
                 examples = examples + examples_of(fine, law, examples, config.fine_share)
                 batches, fine = batches + fine, []
-            begin = networks.get("network") if name == "polish" else None
-            if begin is None:
+            which = "network" if name == "polish" else name
+            first = networks.get(which)
+            if first is None:
                 key = jax.random.key(config.seed)
-                begin = corrector.initial_weights(
+                first = corrector.initial_weights(
                     key, heads, config.width, config.message, config.rounds
                 )
             keep = keeper(name)
-            fitted = task(law, examples, begin, stage, config.seed, keep)
-            networks["network" if name == "polish" else name] = fitted
+            networks[which] = task(law, examples, first, stage, config.seed, keep)
             before = finished(stage, keep)
     network, stress = networks.get("network"), networks.get("stress")
     sizes = (config.width, config.message, config.rounds)
@@ -136,6 +146,34 @@ def train(
             raise
         return model, every
     return replace(model, bound=bound), every
+
+
+def _networks_of(model: Equilibrium) -> dict[str, NetworkWeights]:
+    """Return the networks of a model that a run goes on with, by stage."""
+    own = {"network": model.parameters.network, "stress": model.parameters.stress}
+    return {name: jax.tree.map(jnp.asarray, one) for name, one in own.items() if one is not None}
+
+
+def _identity_from(begin: Equilibrium, config: EquilibriumConfig, identity: str) -> str:
+    """Return the identity of a run that goes on from a model.
+
+    Raises:
+        InputError: the run has no polish, or networks of other sizes.
+    """
+    if config.polish is None:
+        raise InputError(f'the run "{config.name}" has no polish by which a model could go on')
+    if begin.parameters.network is None:
+        raise InputError("the model has no network that could be gone on with")
+    sizes = (config.width, config.message, config.rounds)
+    if begin.sizes != sizes:
+        raise InputError(
+            f"width, message and rounds of the model's networks are {begin.sizes}, those of the "
+            f"run {sizes}"
+        )
+    digest = hashlib.sha256(identity.encode())
+    for array in begin.to_arrays().values():
+        digest.update(array.tobytes())
+    return digest.hexdigest()
 
 
 def with_new_bound(model: Equilibrium, config: EquilibriumConfig) -> Equilibrium:
