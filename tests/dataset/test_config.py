@@ -8,7 +8,7 @@ from simulearn.grid import Rules, validate
 
 
 def test_the_shipped_ones_are_what_they_say():
-    lattices = ["2x3", "3x3", "beams-removed", "calibration", "default", "sample"]
+    lattices = ["2x3", "3x3", "beams-removed", "calibration", "default", "default-more", "sample"]
     families = ["family", "family-bound", "family-fine", "family-kept-out", "family-test"]
     assert shipped() == sorted([*lattices, *families])
     default = read_config("default")

@@ -31,11 +31,11 @@ class Installed:
         self._uv, self._wheel = uv, wheel
         self.extra()
 
-    def extra(self, name: str = "") -> None:
-        """Install the wheel with one extra or none, and take off all else."""
+    def extra(self, name: str = "", dry_run: bool = False) -> None:
+        """Install the wheel with extras or none, and take off all else; or only try to find all."""
         pinned = ["--constraint", ROOT / "requirements.lock"]
         wanted = f"{self._wheel}[{name}]" if name else self._wheel
-        python = ["--python", self.bin / "python"]
+        python = ["--python", self.bin / "python", *(["--dry-run"] if dry_run else [])]
         self._uv("pip", "install", "--exact", *python, *pinned, wanted, cwd=self.folder)
 
     def write(self, name: str, value: Any) -> None:
