@@ -8,8 +8,8 @@ from toys import toy
 
 from simulearn.grid import Grid, make, validate
 from simulearn.inverse import Goals, Space, changes
+from simulearn.inverse.methods import METHODS, method
 from simulearn.inverse.problem import OutOfTime, Problem
-from simulearn.inverse.search import METHODS, method
 from simulearn.inverse.task import Free
 from simulearn.material import load_material
 

@@ -7,8 +7,9 @@ from simulearn.inverse.found import SearchResult
 from simulearn.inverse.front import Answer
 from simulearn.inverse.goals import Goals, Vertex
 from simulearn.inverse.keeping import Past, Step
+from simulearn.inverse.methods import METHODS
 from simulearn.inverse.ranking import Ranking, Suggestion, rank
-from simulearn.inverse.search import METHODS, optimize
+from simulearn.inverse.search import optimize
 from simulearn.inverse.space import Space
 from simulearn.inverse.task import (
     Task,

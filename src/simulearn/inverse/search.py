@@ -12,16 +12,14 @@ Where several answers are wanted, they come after that; see `answers`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
 from time import monotonic
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from simulearn.errors import Cancel, CancelledError, ComputationError, InputError, stop_if
-from simulearn.extras import require
+from simulearn.errors import Cancel, CancelledError, ComputationError, stop_if
 from simulearn.grid import Grid
 from simulearn.inverse.answers import add_answers
 from simulearn.inverse.archive import Archive, Distance
@@ -30,8 +28,9 @@ from simulearn.inverse.found import SearchResult
 from simulearn.inverse.front import Answer
 from simulearn.inverse.goals import Goals
 from simulearn.inverse.keeping import ANSWERS, Past, Step
+from simulearn.inverse.methods import Method, method
 from simulearn.inverse.prints import regard_prints, without_scatter
-from simulearn.inverse.problem import Advance, OutOfTime, Problem, Scored, Until, drawing
+from simulearn.inverse.problem import OutOfTime, Problem, Scored, Until, drawing
 from simulearn.inverse.reach import not_near, out_of_reach
 from simulearn.inverse.scoring import places_and_collisions
 from simulearn.inverse.space import Space
@@ -44,13 +43,6 @@ from simulearn.simulate.learned import Learned
 if TYPE_CHECKING:
     from simulearn.fabricate import Printer
 
-METHODS = {  # name -> module, function
-    "default": ("simulearn.inverse.newton", "newton"),
-    "brute-force": ("simulearn.inverse.brute_force", "brute_force"),
-    "gradient": ("simulearn.inverse.gradient", "gradient"),
-    "cma": ("simulearn.inverse.cma_es", "cma_es"),
-}
-Method = Callable[[Problem, Scored], Iterator[Advance]]
 Progress = Callable[[Step], None]  # called with each step, as soon as it is done
 
 NOMINAL = 0.5  # of the limits of a robust search, before prints are looked at
@@ -62,24 +54,6 @@ WORTH = 0.1  # of the error, that a correction must promise
 GRACE = 10.0  # s beyond the deadline that the first check of a search may take, at most
 GRACE_SHARE = 0.25  # of the time, likewise
 CHECKING = 0.25  # s for each beam that a check takes, until one has been measured
-
-
-def method(name: str) -> Method:
-    """Return the method of a name.
-
-    Raises:
-        InputError: there is none.
-    """
-    if name not in METHODS:
-        known = ", ".join(METHODS)
-        raise InputError(
-            f'method "{name}" is not known; known are {known}', "method-unknown", "method"
-        )
-    if name == "gradient":
-        require("the method gradient needs", "jax")
-    module, function = METHODS[name]
-    search: Method = getattr(import_module(module), function)
-    return search
 
 
 def optimize(

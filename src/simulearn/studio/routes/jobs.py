@@ -13,7 +13,7 @@ from simulearn.grid import Grid, grid_from_dict, grid_to_dict
 from simulearn.grid.gridfile import GridFile
 from simulearn.interop import frames
 from simulearn.inverse import SearchResult, Step, Task, optimize, search_figures, task_from_dict
-from simulearn.inverse.search import method
+from simulearn.inverse.methods import method
 from simulearn.inverse.space import Space
 from simulearn.material import materials_of
 from simulearn.simulate import Failure, Outcome, Result, outcome_to_dict
