@@ -47,6 +47,14 @@ def test_a_scan_on_its_table_with_a_hole_and_strays():
     assert found.noise == pytest.approx(0.15, abs=0.06)
 
 
+def test_where_joints_were_measured_does_not_matter_for_a_scan():
+    points, _ = printed.surface(HIDDEN)
+    given = printed.grid(), Scan(printed.moved(points, 5)), printed.Simulator()
+    top, centre = (compare(*given, at=at, explain=False) for at in ("top", "centre"))
+    assert codes(top) - codes(centre) == {"measurement-at"}
+    np.testing.assert_array_equal(top.deviation.joints, centre.deviation.joints)
+
+
 def test_a_mirrored_scan_with_its_normals_turned_in():
     points, normals = printed.surface(HIDDEN)
     turn, _ = printed.motion(7)

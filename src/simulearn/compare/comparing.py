@@ -115,6 +115,11 @@ def compare(
         found = place_scan(measured, result, material.section.width, cancel)
         joints, along, noise, points = found.joints, found.stations, found.noise, found.points
         messages += found.messages
+        if at != "centre":
+            text = (
+                f"a scan is compared by its whole surface; that its joints are at {at} says nothing"
+            )
+            messages.append(Message("measurement-at", "measurement", text))
         simulated = result.centres[-1]
     else:
         joints, more = _placed(measured, simulated, grid, result)
