@@ -12,7 +12,7 @@ from pathlib import Path
 
 from simulearn import Grid, InputError, make, outputs, simulate, validate
 from simulearn.material import read_material
-from simulearn.material.material import HERE
+from simulearn.material.reading import HERE
 
 SMALL = bool(os.environ.get("SIMULEARN_SMALL"))
 OUT = Path("out/3_own_material")

@@ -13,7 +13,8 @@ from simulearn.errors import InputError
 from simulearn.fabricate import Printer, load_printer, prepare, profile_text
 from simulearn.fabricate.bed import EDGE, GAP, _packed, place
 from simulearn.grid import Grid, make, outline
-from simulearn.material import load_material, material
+from simulearn.material import load_material
+from simulearn.material.reading import HERE
 
 SECTION = load_material("pla-hot-water").section
 
@@ -104,7 +105,7 @@ def test_the_skirt_draws_near_where_the_bed_ends_or_is_left_out():
 
 
 def test_materials_are_not_mixed(tmp_path):
-    text = (material.HERE / "pla-hot-water.toml").read_text()
+    text = (HERE / "pla-hot-water.toml").read_text()
     other = tmp_path / "other.toml"
     other.write_text(text.replace('name = "pla-hot-water"', 'name = "other"'))
     dome = make("dome", length=30.0)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from simulearn.schedule import FRAMES
 from simulearn.simulate.result import Result
 from simulearn.simulate.resultfile import qualities
 
@@ -51,7 +52,9 @@ def remarks(result: Result) -> list[str]:
         lines.append("the shape is in unstable balance and may snap into another")
     if all(message.code != "snap" for message in result.warnings):
         lines += [
-            f"the grid snaps at {snap.released:.1%} released (frame {snap.frame})"
+            f"the grid snaps while it creeps (frame {snap.frame})"
+            if snap.frame == FRAMES - 1
+            else f"the grid snaps at {snap.released:.1%} released (frame {snap.frame})"
             for snap in result.snaps
         ]
     return lines

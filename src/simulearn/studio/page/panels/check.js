@@ -30,9 +30,8 @@ function apart({ reference, result }) {
 
 function snapWords(snaps) {
   if (!snaps?.length) return t("panels.snapsNone");
-  return snaps.map(({ released, frame }) => t("panels.snapsAt", {
-    percent: percent(released ?? frame / RELEASED),
-  })).join(", ");
+  return snaps.map(({ released, frame }) => frame > RELEASED ? t("panels.snapsCreeping")
+    : t("panels.snapsAt", { percent: percent(released ?? frame / RELEASED) })).join(", ");
 }
 
 function progress({ progress: frames, seconds: passed, state: now, lost }) {

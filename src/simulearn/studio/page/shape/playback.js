@@ -81,7 +81,8 @@ export const Playback = {
         }),
         h("div", { class: "shape-marks", "aria-hidden": "true" }, [
           ...Array.from({ length: LAST + 1 }, (_, k) => mark(k, k === 0 || k >= LAST - 1 ? "strong" : "")),
-          ...(props.snaps ?? []).map(({ released }) => mark(10 * released, "snap", t("shape.snapsHere"))),
+          ...(props.snaps ?? []).map(({ released, frame }) =>
+            mark(frame === LAST ? LAST - 0.5 : 10 * released, "snap", t("shape.snapsHere"))),
         ]),
       ]),
       h("output", { class: "shape-moment" }, props.disabled ? "" : words()),

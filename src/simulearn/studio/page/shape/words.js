@@ -37,8 +37,10 @@ export function summaryOf(result) {
   const side = (axis) => number(high[axis] - low[axis], 0);
   const notes = [];
   if (!result.stable) notes.push({ kind: "warning", text: t("shape.unstable") });
-  for (const { released } of result.snaps ?? [])
-    notes.push({ kind: "warning", text: t("shape.snaps", { percent: number(100 * released, 0) }) });
+  for (const { released, frame } of result.snaps ?? []) {
+    const text = frame === LAST ? t("shape.snapsCreeping") : t("shape.snaps", { percent: number(100 * released, 0) });
+    notes.push({ kind: "warning", text });
+  }
   for (const { parts, frame, share, depth_mm: mm } of (result.collisions ?? []).slice(0, NAMED)) {
     const [a, b] = parts.map((part) => partName(result, part));
     const when = moment(share < 0.5 ? frame : frame + 1);
