@@ -24,7 +24,7 @@ def test_the_lampshade_comes_close(tmp_path):
     assert len(tiled.tiling.names) == 28
     assert len(tiled.grids) == len(list(tmp_path.glob("k*.json"))) == 4
     assert tiled.fit.error_mm < 1.0
-    assert tiled.fit.gap_mm < 2.5
+    assert tiled.fit.gap_mm < 2.0
     with Image.open(tmp_path / "deviation.png") as picture:
         assert picture.width == 1440
 

@@ -168,7 +168,7 @@ def archives():
         yield {**fields, "data": base64.b64encode(bytes(data)).decode()}
 
 
-def test_damaged_archives_are_reported_at_once():
+def test_damaged_archives_are_reported():
     """Such archives take the library that reads them up to a minute and all memory."""
     errors = []
     for fields in archives():

@@ -92,7 +92,9 @@ def train(
         wanted = wanted.of_own(str(data), sum(int((~b.test).sum()) for b in trials.batches))
         err.print(f"{escape(str(data))} alone is learnt from; {_aside(wanted.validation)}")
     if search:
-        if isinstance(wanted, EquilibriumConfig) or begin is not None:
+        if begin is not None:
+            raise InputError("--from and --search exclude each other")
+        if isinstance(wanted, EquilibriumConfig):
             raise InputError("--search is for the kind paper; this configuration has no noise")
         from simulearn.learn.paper.search import search as search_for
         from simulearn.show.learning import search_picture
@@ -112,7 +114,6 @@ def train(
     from simulearn.show.learning import loss_picture, stages_picture
 
     first = bundle_of(begin) if begin is not None else None
-
     picture: Callable[[Any, str], Any] = (
         stages_picture if isinstance(wanted, EquilibriumConfig) else loss_picture
     )
